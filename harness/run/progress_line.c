@@ -58,7 +58,7 @@ static void *tell_on(void *arguments)
     return NULL;
 }
 
-/* Start one thread that ignores signals; without it only the beginning is shown. */
+/* Start one thread with all signals blocked; without it only the beginning is shown. */
 static void start(void)
 {
     pthread_t thread;

@@ -24,7 +24,7 @@ enum {
     POINTS = 4096, /* pixels that share a seed's delay */
     BYTES_MOST = 1 << 26
 };
-static const double SHARPER = 2;                   /* a larger factor of amplitudes is no chance */
+static const double SHARPER = 2;                   /* a larger factor of amplitudes is beyond chance */
 static const double SPIKE = 1.5;                   /* of a record's largest samples by either pulse */
 static const double COHERENT = 0.6, BY_CHANCE = 4; /* of a sum over the sum of amplitudes; over sqrt(records) */
 
@@ -265,7 +265,7 @@ static void seeds_focus(const struct view *view, const struct seed seeds[SEEDS],
     }
 }
 
-/* By the records unchanged, and where the pulse compresses their conjugates to higher spikes, by these. */
+/* Focus the records unchanged; where their conjugates compress to higher spikes, focus these as well. */
 static void faults_focus(struct view *view, struct vector *points, struct focus focus[FAULTS])
 {
     struct seed seeds[2][SEEDS];

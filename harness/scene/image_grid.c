@@ -102,8 +102,8 @@ static double sample_at(struct search *search, double i, double j)
 }
 
 /* Does a pixel of rows i0..i1 and columns j0..j1 meet the record? A block is skipped only when no delay in it can.
-   The delay is convex in the place (backprojection/pairs/pairs.c): none is longer than the longest at a corner, nor
-   shorter than the middle's by more than the longest is longer. That is true at any speed. */
+   The delay is convex in the place (backprojection/pairs/pairs.c): none exceeds the longest at a corner, and none is
+   below the middle's by more than that longest one is above it. That is true at any speed. */
 static bool block_meets(struct search *search, int i0, int i1, int j0, int j1)
 {
     const double last = search->acquisition->samples - 1;

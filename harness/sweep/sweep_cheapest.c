@@ -76,7 +76,7 @@ static void row_tell(const struct measurement *row, const char *threshold, const
     table_text(stdout, 52, tied);
 }
 
-/* Does the terminal show the family: only one of several, and by run time? */
+/* Does the terminal show the family? That of all algorithms always, another one only among several and by run time. */
 static bool is_told(const struct group *group, size_t family, int c)
 {
     bool others = false;

@@ -37,8 +37,8 @@ static void fronts_write(struct group *group, FILE *file)
 
 /* The rules for the upsampling rate at this scene's numbers (BP22 Eq. (20), ZP15's lambda/8), and two error laws:
    the envelope's phase at the band's edge at rate 1, which falls as 1/rate, and the floor of linear interpolation.
-   That is its loss 1 - sinc^2(f/fs), about (pi f/fs)^2/3, rms over a flat band |f| <= B/2: pi^2 (B/fs)^2/(12 sqrt
-   5). A scene that is missing or has changed since has none. */
+   That is its loss 1 - sinc^2(f/fs), about (pi f/fs)^2/3, rms over a flat band |f| <= B/2:
+   pi^2 (B/fs)^2/(12 sqrt 5). A scene that is missing or has changed since has none. */
 static void rules_write(struct group *group, const struct scene *given, const struct csv *csv, FILE *file)
 {
     struct scene scene = {0};
