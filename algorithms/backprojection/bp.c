@@ -12,8 +12,8 @@
 #include "common/fft_length.h"
 #include "common/pulse_band.h"
 
-/* The kernel's branches, where they are few enough; false without memory. In float they may be as far off as phase
-   factors are rounded (ROUNDING). */
+/* The kernel's branches, if there are at most KERNEL_BRANCHES_MOST; false without memory. In float they may err by the
+   rounding of phase factors (ROUNDING). */
 static bool kernel_make(struct bp *bp, const struct interpolator *in)
 {
     const size_t count = KERNEL_BRANCHES_MOST * (size_t)in->taps;
@@ -26,7 +26,7 @@ static bool kernel_make(struct bp *bp, const struct interpolator *in)
     return bp->kernel.branches >= 0;
 }
 
-/* How it is read, but for the weights. */
+/* The way of reading, without the weights. */
 static struct bp_table table_of(const struct interpolator *in)
 {
     if (in->degree > 0)
@@ -99,10 +99,10 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in)
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-/* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels,
-   every pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over
-   records and contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from how a
-   method reads records. The inverse FFT of zero padding is as long as the record that it makes. */
+/* The counted and the published work, without the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels,
+   every pixel summed over every record; here the actual pixels are counted. LBF21 Eq. (23) lacks the sum over records
+   and contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from the method's
+   interpolator. The inverse FFT of zero padding is as long as the padded record. */
 static void count_work(struct bp *bp, const struct interpolator *in)
 {
     const struct acquisition *a = bp->problem.acquisition;
@@ -159,14 +159,14 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
     if (options->engine == BP_ENGINE_INVARIANT
         || (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK && tables_pay(bp)))
         bp->engine = &bp_invariant;
-    /* The approximation may not move a sample coordinate by more than a quarter of the finest step either. */
+    /* The approximation also moves a sample coordinate by at most a quarter of the finest step. */
     double finest = bp->medium.fs * bp->table.upsample * (bp->table.steps > 0 ? bp->table.steps : 1);
     if (!options->exact)
         bp->medium.phase_limit = budget_limit(options->phase_limit, bp->medium.fc, finest);
     return STATUS_OK;
 }
 
-/* The engine's plan; where tables would be too large and nobody asked for them, the general engine's. */
+/* The engine's plan; the general engine's where tables would be too large and engine is auto. */
 static enum status engine_plan(struct bp *bp, const struct bp_options *options)
 {
     enum status status = bp->engine->plan(bp);
@@ -178,7 +178,7 @@ static enum status engine_plan(struct bp *bp, const struct bp_options *options)
     return status;
 }
 
-/* Let the problem be that of the aperture which the settings ask for, where it is the smaller one. */
+/* Limit the problem's aperture to that of the settings, where it is smaller. */
 static void aperture_take(struct bp *bp, const struct bp_options *options)
 {
     if (!(options->aperture > 0 && options->aperture < fmin(1, bp->problem.acquisition->aperture_limit)))
@@ -231,7 +231,7 @@ enum status bp_execute(void *plan, const struct echoes *echoes, struct image *im
     return STATUS_OK;
 }
 
-/* Counting pairs takes longer than planning: it is left until somebody asks. */
+/* Counting pairs takes longer than planning, so it waits for a request. */
 struct work bp_work(const void *plan)
 {
     const struct bp *bp = plan;
@@ -256,14 +256,14 @@ struct work bp_work(const void *plan)
 
 /* Rounding, relative L2: of sums in the invariant engine, and with the phase factors of the general one (budget.h). */
 static const double ROUNDING[][2] = {{3e-7, 1e-13}, {2.5e-6, 1e-9}};
-/* Of the phase limit, what interpolated delays leave, root mean square: the bound holds at a block's corners. */
+/* Root mean square error by interpolated delays over the phase limit, which is reached at a block's corners only. */
 static const double DELAYS_SHARE = 0.3;
 
-/* What a pair reads in the general engine: a kernel of few branches is read as those. */
+/* Values that a pair reads in the general engine: a kernel with branches is read by these. */
 static enum status forecast_reading(const struct bp *bp, const struct interpolator *in, struct forecast *forecast)
 {
     struct bp kernel = {.problem = bp->problem};
-    kernel.problem.precision = PRECISION_FLOAT; /* so that both precisions are forecast alike */
+    kernel.problem.precision = PRECISION_FLOAT; /* so that both precisions have the same forecast */
     const bool line = in->taps == 2 && (in->steps > 0 || bp->engine == &bp_invariant);
     forecast->kind = in->degree > 0 ? READ_BRANCHES : line ? READ_LINE : in->taps > 1 ? READ_TAPS : READ_NEAREST;
     forecast->values = in->degree > 0 ? in->degree + 1 : in->taps;
@@ -278,7 +278,7 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
     return made ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-/* Who does the sums, and which records are read, without a plan: of *bp `tables` and `turned` are to be freed. */
+/* Choose the engine and the records read, without a plan. The caller frees `tables` and `turned` of *bp. */
 static enum status forecast_begin(const struct problem *problem, const struct interpolator *in,
                                   const struct bp_options *options, struct bp *bp)
 {
@@ -307,7 +307,7 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     forecast->pair_flops =
         4.0 * (in->taps == 1 && in->degree == 0 ? 0 : forecast->values - (forecast->kind == READ_BRANCHES)) + 8;
     double sums = 0;
-    forecast->record_flops = records * traces_float.flops(a, &form, &sums); /* alike in both precisions */
+    forecast->record_flops = records * traces_float.flops(a, &form, &sums); /* the same in both precisions */
     forecast->slowness = fft_slowness(traces_float.period(a, &form));
     forecast->kernel_flops = records * (4.0 * forecast->values * taps * fine + sums);
     forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);

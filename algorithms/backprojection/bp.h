@@ -3,8 +3,8 @@
        image(x, r) = sum over pings and receivers of  s_pm(tau) exp(+j 2 pi fc tau),   tau = delay_exact(...)
 
    (BP22 Eqs. (5), (9) with the absolute phase; ZP15 Eqs. (6), (7)), for any track in space. A pair counts while tau
-   lies inside the record and |sin theta_t| inside the aperture limit. The methods differ only in how s_pm is read
-   between its samples, which is what a struct interpolator says. */
+   lies inside the record and |sin theta_t| inside the aperture limit. The methods differ only in how they read s_pm
+   between its samples: a struct interpolator. */
 #ifndef SASBENCH_BACKPROJECTION_BP_H
 #define SASBENCH_BACKPROJECTION_BP_H
 
@@ -16,10 +16,10 @@
    1: the band-limited signal's own continuation). */
 struct interpolator {
     int upsample;     /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
-    int steps;        /* > 0: q is rounded to the nearest multiple of 1/steps first, at most 4096; 0: it is not */
+    int steps;        /* > 0: q is rounded to the nearest multiple of 1/steps first, at most 4096; 0: not rounded */
     int taps, first;  /* taps >= 1; first <= 0 */
-    bool preemphasis; /* what linear interpolation takes off the spectrum, sinc^2(f/fs), is divided out first; not with
-                         a degree */
+    bool preemphasis; /* the spectrum is first divided by sinc^2(f/fs), the loss of linear interpolation; not with a
+                         degree */
     int degree;       /* > 0: in place of taps, the record's Farrow branches up to this power (farrow.h) are read at
                         floor(q + 1/2); taps and steps are not used */
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
@@ -27,15 +27,15 @@ struct interpolator {
     union {
         double beta;          /* of a Kaiser window */
         struct fitted fitted; /* taps by least squares */
-    } kernel;                 /* what `weights` makes them of */
-    bool in_papers; /* BP22 Eq. (11) and LBF21 Eq. (23) count its FLOPs (struct work): published numbers are given */
+    } kernel;                 /* input of `weights` */
+    bool in_papers;           /* BP22 Eq. (11) and LBF21 Eq. (23) count its FLOPs: struct work has published numbers */
 };
 
 /* Settings of every back projection: the first member of a method's options struct. */
 struct bp_options {
     int engine;         /* enum bp_engine_choice */
     int exact;          /* 1: the general engine evaluates every delay; 0: it interpolates them */
-    double phase_limit; /* rad: what the interpolated delays may change a pair's phase by */
+    double phase_limit; /* rad: largest phase error of a pair by interpolated delays */
     double aperture;    /* > 0: only pairs with |sin theta_t| <= this are summed, beside the acquisition's own limit */
 };
 enum bp_engine_choice { BP_ENGINE_AUTO, BP_ENGINE_GENERAL, BP_ENGINE_INVARIANT };
@@ -58,11 +58,11 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
                                             .initial = 1, .min = 1e-6, .max = 1, .terse = true                         \
     }
 
-/* `method` of struct algorithm: what options, which begin with a struct bp_options, make of a problem. */
+/* `method` of struct algorithm; options begin with a struct bp_options. */
 struct bp_method {
     /* Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED. */
     enum status (*make)(const struct problem *problem, const void *options, struct interpolator *interpolator);
-    const struct bp_options *fixed; /* in place of options; NULL: there are some */
+    const struct bp_options *fixed; /* in place of options; NULL: the method has options */
 };
 
 /* The callbacks of struct algorithm, whose `method` is a struct bp_method. */
@@ -78,17 +78,17 @@ enum status bp_method_cost(const struct problem *problem, const void *method, co
 int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                          int room);
 
-/* The same for an interpolator, which like the options is only used during the call. Errors: STATUS_UNSUPPORTED when
-   the engine asked for cannot do the problem, with the reason. */
+/* The same for an interpolator. Interpolator and options are used during the call only. Errors: STATUS_UNSUPPORTED,
+   with the reason, when the engine asked for cannot image the problem. */
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator,
                     const struct bp_options *options, void **plan);
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 void bp_reads(const void *plan, bool *read);
 struct work bp_work(const void *plan);
 void bp_destroy(void *plan);
-/* The forecast of an interpolator: its error law, the delays and the rounding of the engine that bp_plan would choose;
-   and all of it but the law, which takes most of the time. Errors: as bp_plan for the engine asked for, and for the
-   conditions; STATUS_FAILED without memory. */
+/* The forecast of an interpolator: its error law, and delays and rounding of the engine that bp_plan would choose. The
+   second function leaves out the law, which takes most of the time. Errors: as bp_plan for the engine asked for, and
+   for the conditions; STATUS_FAILED without memory. */
 enum status bp_cost(const struct problem *problem, const struct interpolator *interpolator,
                     const struct bp_options *options, struct forecast *forecast);
 enum status bp_forecast(const struct problem *problem, const struct interpolator *interpolator,

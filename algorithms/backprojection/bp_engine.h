@@ -12,7 +12,7 @@
 
 /* The weights of a kernel of many taps as polynomials (kernel.h), for the general engine's interpolated delays. */
 struct bp_kernel {
-    int branches, taps, first; /* no branches: it has none */
+    int branches, taps, first; /* branches 0: none */
     double *coefficients;      /* [branches][taps] */
 };
 
@@ -28,28 +28,28 @@ struct bp {
     const struct bp_engine *engine;
     void *state; /* the engine's own */
     struct work work;
-    struct turned_problem turned; /* what `problem` points to where grids are turned */
-    struct acquisition limited;   /* and where the settings limit the aperture */
+    struct turned_problem turned; /* target of `problem` where grids are turned */
+    struct acquisition limited;   /* target of its acquisition where the settings limit the aperture */
     bool *met;                    /* [pings] pings_met: records of others are not read; NULL: all are met */
     struct store tables, engines; /* the weights and `met`; the traces and the engine's own */
 };
 
-/* Bytes of a plan's struct, but for what keeps account. */
+/* Bytes of a plan's struct, without its bookkeeping. */
 #define BP_BYTES(plan) ((double)(sizeof(plan) - 2 * sizeof(struct store)))
 
 /* One way of doing the sums. */
 struct bp_engine {
     const char *name;
-    /* Can it do the problem of bp->problem? When not, the reason is the status message (STATUS_UNSUPPORTED). */
+    /* Can it image bp->problem? If not, the status message is the reason (STATUS_UNSUPPORTED). */
     enum status (*applicable)(const struct bp *bp);
-    /* What a plan would make for the pairs to read by, all records together: `units`, entries of tables or blocks of
-       pixels. Known from bp->problem, medium and table, before any plan; of a problem that is applicable. `residues`:
-       of tables, columns from ping to ping whose neighbours share loads, the fewest of all patches: 1 where the nearest
-       fine step is read, which none share. `apart`: without tables, the share of pairs that share no loads. */
+    /* Counts of a plan, all records together, from bp->problem, medium and table, before any plan; the problem is
+       applicable. `units`: entries of tables, or blocks of pixels. `residues`: with tables, columns from ping to ping
+       whose neighbours share loads, the fewest of all patches; 1 where the nearest fine step is read. `apart`: without
+       tables, the share of pairs that share no loads. */
     void (*units)(const struct bp *bp, struct forecast *forecast);
-    /* m: how far along the track beyond the pairs' places delays are evaluated; NULL: nowhere. */
+    /* m along the track: delays are evaluated so far beyond the pairs' places; NULL: 0. */
     double (*beside)(const struct bp *bp);
-    /* Make bp->state and bp->traces, of what bp->engines owns. */
+    /* Make bp->state and bp->traces; bp->engines owns them. */
     enum status (*plan)(struct bp *bp);
     void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
 };
@@ -57,26 +57,26 @@ struct bp_engine {
 extern const struct bp_engine bp_general;   /* any track: delays of runs of range rows */
 extern const struct bp_engine bp_invariant; /* uniform straight track on the pixel raster: tables of delays */
 
-/* What the second one needs of a problem. */
+/* Requirements of the invariant engine. */
 struct condition invariant_condition(const struct problem *problem, enum severity severity);
 
 static inline bool bp_met(const struct bp *bp, int ping)
 {
     return !bp->met || bp->met[ping];
 }
-/* Find bp->met: the pings that any pixel of the whole image meets, by which the records' form is planned; then, of a
-   window, those that its own pixels meet, whose records are read. Errors: STATUS_FAILED without memory. */
+/* Find bp->met. First the pings in pairs of the whole image, which decide the records' form. Then, with a window, the
+   pings in pairs of its pixels: only their records are read. Errors: STATUS_FAILED without memory. */
 enum status bp_met_find(struct bp *bp);
 enum status bp_met_narrow(struct bp *bp);
-/* What of the image is wanted, as a problem of its own; *part is its grid where there is a window. */
+/* The wanted part of the image as a problem of its own; *part is its grid where there is a window. */
 struct problem bp_wanted(const struct bp *bp, struct grid *part);
 /* Pings whose records are read. */
 int bp_met_count(const struct bp *bp);
 
-/* How many neighbouring pings are summed together at the most, the first a multiple of so many. */
+/* The most neighbouring pings that are summed together; the first ping is a multiple of this number. */
 int bp_pings_joined(const struct acquisition *acquisition);
 
-/* Memory of bp->engines of which a window needs a part: all is there, what is not used takes no room and is 0. */
+/* Memory of bp->engines. With a window, unused parts are 0 and take no room. */
 void *bp_part_allocate(struct bp *bp, size_t bytes);
 
 static inline size_t real_size(enum precision precision)
@@ -84,12 +84,12 @@ static inline size_t real_size(enum precision precision)
     return precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
 }
 
-/* What of the records pairs read, into bp->medium, and the form of their rows; all where there is no engine. */
+/* The part of the records that pairs read, into bp->medium, and the form of its rows; all of them without an engine. */
 struct traces_form bp_records_form(struct bp *bp);
-/* Records for up to omp_get_max_threads() threads; fills bp->traces, which bp->engines owns, and bp->shape; `origin` of
-   the table follows from them. */
+/* Records for up to omp_get_max_threads() threads. Fills bp->traces, which bp->engines owns, bp->shape, and from these
+   `origin` of the table. */
 enum status bp_plan_traces(struct bp *bp);
-/* Name into `text` of `room` characters, behind `join`, the samples that no row needs; nothing where there are none. */
+/* Append to `text` of `room` characters `join` and the samples that no row needs; nothing if all are needed. */
 void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join);
 /* Record `index` of the echoes, complex [samples]. */
 static inline const void *bp_record(const struct bp *bp, const struct echoes *echoes, size_t index)

@@ -1,7 +1,7 @@
-/* The error budget of the general engine: all that its fast path may add to the phase of a pair, in one place. Other
-   paths evaluate every delay: exact=true, pixels too near the array, blocks that reach out of the record.
+/* The error budget of the general engine: all phase errors of a pair on its fast path. Other paths evaluate every
+   delay: exact=true, pixels too near the array, blocks that reach out of the record.
 
-   `phase_limit` L (rad, 1e-4 by default) bounds what stands in for delays. All errors of the fast path:
+   `phase_limit` L (rad, 1e-4 by default) bounds the error by approximated delays. All errors of the fast path:
 
    share           what errs, and why by no more                                                used in
 
@@ -32,8 +32,8 @@
 
    In all, in float: 0.994 L + 5.2e-6 rad at the default limit, that is, L + 4.6e-6 rad. In double: L + 1e-9 rad.
 
-   Two errors of positions come on top of L/(2 pi fc) s. They do not change phases. They decide which of two samples, or
-   of two steps of a table, a position takes that is as near to a tie between them:
+   Two errors of positions come on top of L/(2 pi fc) s. They do not change phases. Near a tie of two samples, or of two
+   steps of a table, they decide which one a position takes:
 
    2^-17 sample    Runs that bend little, in float. Their positions are floats that count from  runs.c, points_flat:
    (float)         the run's middle. Half of 256 pixels with less than 1/4 sample each are      `point`
@@ -44,7 +44,7 @@
                    19 bits of fraction (POINT_BITS). Nearest samples have 32 bits; the points   `point`
                    of cubics are 1/256 sample.
 
-   Polynomials (bp_farrow) err by the slope of the signal times what positions err by, without ties:
+   Polynomials (bp_farrow) have no ties. They err by the signal's slope times the error of the position:
 
    2^-33 sample    Fixed-point numbers with 32 bits of fraction (FIXED_32).                     runs.c, points:
    (double)                                                                                     `point`
@@ -53,13 +53,13 @@
    (float)         fraction along the line, plus the bend in float, 3 n 2^-24 cycles times
                    fs/fc.
 
-   The invariant engine, where polynomials stand for a row's delays (invariant/pieces.c), takes much less of L: its
-   longer polynomials cost nothing, and its image is the exact path's but for rounding.
+   The invariant engine replaces a row's delays by polynomials (invariant/pieces.c) and takes much less of L: longer
+   polynomials cost nothing, and its image is the exact path's but for rounding.
 
    1e-4 L (float)  Phases, and positions in cycles of fs: 1e-8 rad and 2e-9 samples at the        invariant_plan.c,
    2e-7 L (double) default limit in float, below what their rounding adds.                       pieces_plan
 
-   harness/tests/algorithms/test_budget.c measures the phases, in all and what float adds alone, test_bp_general.c the
+   harness/tests/algorithms/test_budget.c measures the phases, in all and of float alone; test_bp_general.c the
    positions (near_ties). */
 #ifndef SASBENCH_BACKPROJECTION_BUDGET_H
 #define SASBENCH_BACKPROJECTION_BUDGET_H
@@ -68,7 +68,7 @@
 
 #include "contract/algorithm.h"
 
-/* rad: what is left of `phase_limit` where positions may lie `finest_hz` steps a second apart. */
+/* rad: `phase_limit`, lowered where positions lie `finest_hz` steps a second apart. */
 static inline double budget_limit(double phase_limit, double fc_hz, double finest_hz)
 {
     return fmin(phase_limit, 1.57 * fc_hz / finest_hz);
@@ -80,8 +80,7 @@ static inline double budget_quintics(double phase_limit, enum precision precisio
     return (precision == PRECISION_FLOAT ? 0.85 : 1) * phase_limit;
 }
 
-/* rad: of the phase, and of a position in cycles of fs, where polynomials stand for a row's delays in the invariant
-   engine. */
+/* rad: error of the phase, and of a position in cycles of fs, by the polynomials of the invariant engine. */
 static inline double budget_pieces(double phase_limit, enum precision precision)
 {
     return (precision == PRECISION_FLOAT ? 1e-4 : 2e-7) * fmin(phase_limit, 1e-4);

@@ -23,7 +23,7 @@ void farrow_gains(int degree, double nu, double *gains)
     }
 }
 
-/* Mean square over u of what the cut leaves out at nu. */
+/* Mean square over u of the terms cut off at nu. */
 static double left_out(int degree, double nu)
 {
     enum { TERMS = 12 };
@@ -60,8 +60,8 @@ int farrow_degree(double error, const struct law_spectrum *spectrum, int upsampl
     return degree;
 }
 
-/* Small images, and raw echoes that a record cuts, have more at the band's edges than the law says: the error is up to
-   half as large again. */
+/* Small images, and raw echoes cut by the record's ends, have more energy at the band's edges than in the law: the
+   error is up to 1.5 times as large. */
 static const double SHARE = 0.7;
 
 int farrow_degree_choose(double error, const struct problem *problem, int upsample)
@@ -132,8 +132,8 @@ static void branch_fit(int m, int columns, double (*q)[FREQUENCIES], double (*r)
     }
 }
 
-/* Taps are fitted where an upsampled record has frequencies, each weighted by the error that there is anyway, of which
-   the least are alike: weights of all magnitudes make large taps. */
+/* Taps are fitted over an upsampled record's frequencies, each weighted by the error of the cut. The smallest errors
+   are raised to one value: weights of all magnitudes make large taps. */
 void farrow_taps_make(int degree, int upsample, double band, int reach, struct farrow_taps *taps)
 {
     const double law = farrow_error(degree, band / upsample) + 1e-12;

@@ -11,7 +11,7 @@ static const double RIDGE = 1e-12;
 
 void fitted_make(int taps, double band, struct fitted *fitted)
 {
-    /* Fejer's quadrature over half the band: at Chebyshev points, exact to rounding for so few cycles. */
+    /* Fejer's quadrature over half the band: at Chebyshev points, exact to rounding for this number of cycles. */
     enum { POINTS = 48 };
     double wave[2][FITTED_TAPS_MOST], row[FITTED_TAPS_MOST], lower[FITTED_TAPS_MOST * FITTED_TAPS_MOST];
     *fitted = (struct fitted){.taps = taps};

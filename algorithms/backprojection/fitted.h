@@ -1,16 +1,16 @@
-/* Taps fitted by least squares: of all kernels of their length, those whose error, averaged over a flat band |nu| <=
-   band/2 (cycles a sample), is least at every fraction of a sample. With the taps at p_k = k - (taps-1)/2 and u =
-   fraction - 1/2, both in samples from the middle of the two nearest samples,
+/* Taps fitted by least squares: at every fraction of a sample, the kernel of its length with the least error over a
+   flat band |nu| <= band/2 (cycles a sample). With the taps at p_k = k - (taps-1)/2 and u = fraction - 1/2, both in
+   samples from the middle of the two nearest samples,
 
        R w = s,    R_kl = sinc(band (k - l)) + 1e-12 [k = l],    s_k = sinc(band (p_k - u))
 
-   The diagonal keeps R positive where the band is so narrow that fewer taps would do; it adds 1e-6 to the error at the
-   most where weights are as large as 1. s is solved for as a series of Legendre polynomials,
+   The term 1e-12 keeps R positive where the band is so narrow that fewer taps would do. It adds at most 1e-6 to the
+   error where weights are as large as 1. s is a series of Legendre polynomials,
 
        s_k = sum over n of (2n+1) (+-) P_n(2u) <j_n(pi nu) {cos, sin}(2 pi nu p_k)>
 
    (< > the mean over the band; cosines with n even, sines with n odd; Abramowitz and Stegun Eq. 10.1.47), so that the
-   weights are one smooth function of the fraction, however near R is to singular. */
+   weights are a smooth function of the fraction even where R is nearly singular. */
 #ifndef SASBENCH_BACKPROJECTION_FITTED_H
 #define SASBENCH_BACKPROJECTION_FITTED_H
 

@@ -6,7 +6,7 @@
 
 #include "common/bessel.h"
 
-enum { MOST = KERNEL_BRANCHES_MOST, BRANCHES_LEAST = 2 /* one alone would be read as single samples */ };
+enum { MOST = KERNEL_BRANCHES_MOST, BRANCHES_LEAST = 2 /* a single one would be read as nearest samples */ };
 
 void sinc_weights(int taps, double beta, double fraction, double *w)
 {
@@ -47,7 +47,7 @@ int kernel_branches(const struct interpolator *interpolator, double tolerance, d
             series[n * taps + t] = sum * (n == 0 ? 1 : 2) / MOST;
         }
     int count = MOST;
-    for (; count > BRANCHES_LEAST; count--) { /* what is cut off adds up */
+    for (; count > BRANCHES_LEAST; count--) { /* the terms cut off add up */
         double largest = 0;
         for (int t = 0; t < taps; t++)
             largest = fmax(largest, fabs(series[(count - 1) * taps + t]));

@@ -8,8 +8,8 @@
 enum { KERNEL_BRANCHES_MOST = 20 };
 
 /* Fill coefficients[KERNEL_BRANCHES_MOST][taps], lowest power first, by the Chebyshev series of each weight. Returns
-   the least number of branches, 2 at least, that keep all weights within `tolerance`, 0 where KERNEL_BRANCHES_MOST do
-   not, -1 without memory. */
+   the least number of branches (>= 2) with all weights within `tolerance`; 0 if more than KERNEL_BRANCHES_MOST are
+   needed, -1 without memory. */
 int kernel_branches(const struct interpolator *interpolator, double tolerance, double *coefficients);
 
 #endif

@@ -1,5 +1,5 @@
-/* Error laws of interpolators (law.h). Fractions are averaged by the midpoint rule, as many in each step of those that
-   round. */
+/* Error laws of interpolators (law.h). Fractions are averaged by the midpoint rule; interpolators that round have
+   equally many in each step. */
 #include "backprojection/law.h"
 
 #include <math.h>
@@ -50,8 +50,8 @@ double interpolation_error(const struct interpolator *in, const struct law_spect
     return error_of(list, spectrum);
 }
 
-/* A pulse sinc(B t) at d samples from a record's end is 1/(pi rho d), rho = B/fs, where the first tap reads zero, whose
-   weight is 1/(pi d). The integral of the square of their product, at most 1, from the end to d. */
+/* A pulse sinc(B t) at d samples from a record's end is 1/(pi rho d), rho = B/fs, at the first tap that reads zero,
+   whose weight is 1/(pi d). The integral of the square of their product, at most 1, from the end to d. */
 static double end_energy(double rho, double d)
 {
     const double share = 1 / (M_PI * M_PI * rho), whole = sqrt(share);
@@ -65,8 +65,8 @@ static double end_mean(double rho, double reach, double a, double b)
     return near < reach ? (end_energy(rho, fmin(far, reach)) - end_energy(rho, near)) / (far - near) : 0;
 }
 
-/* A column of a patch in parts: the sum of the pairs' amplitudes, and of what they miss, root mean square over a part.
-   The norm of a sum is at most the sum of the norms, and near it where pairs are as near to an end. */
+/* A column of a patch in parts: the sum of the pairs' amplitudes, and of their errors, root mean square over a part.
+   The norm of a sum is at most the sum of the norms, and near it where pairs are equally near to an end. */
 enum { PARTS = 8 };
 struct column {
     double seen[PARTS], missed[PARTS];
@@ -85,7 +85,7 @@ static double seen_amplitude(const struct acquisition *a, int ping, struct vecto
                : 1;
 }
 
-/* Adds what a pair sees of column j of a patch. */
+/* Add a pair's echoes of column j of a patch. */
 static void column_add(const struct acquisition *a, const struct grid *g, double reach, double j, int ping,
                        int receiver, struct column *column)
 {
@@ -107,13 +107,13 @@ static void column_add(const struct acquisition *a, const struct grid *g, double
     }
 }
 
-/* The n-th of `most` places that lie evenly over `count`, which are at least as many. */
+/* The n-th of `most` evenly spaced places among `count` >= `most`. */
 static int evenly(int n, int most, int count)
 {
     return most > 1 ? (int)((double)n * (count - 1) / (most - 1)) : 0;
 }
 
-/* Energy that is missed of a patch, as a share. */
+/* The share of a patch's energy in the errors. */
 static double patch_ends(const struct acquisition *a, const struct grid *g, double reach)
 {
     enum { COLUMNS = 3, PINGS_MOST = 128, RECEIVERS_MOST = 4 };

@@ -13,7 +13,7 @@ static const double node[GAUSS] = {0.0950125098376374, 0.2816035507792589, 0.458
 static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025, 0.1495959888165767,
                                      0.1246289712555339, 0.0951585116824928, 0.0622535239386479, 0.0271524594117541};
 
-/* Of the energy of pulses of some cycles, that of their flanks: more of it outside of a band is a band elsewhere. */
+/* The share of the flanks in the energy of pulses of some cycles: with more outside, the band lies elsewhere. */
 static const double FLANKS = 0.01;
 
 /* The replica's own, in bins whose nodes are their middles of energy: an interpolator's error grows steeply at the
@@ -31,7 +31,7 @@ static bool replica_spectrum(const struct acquisition *a, double cells, struct l
     *spectrum = (struct law_spectrum){.count = BINS, .reach = BINS / 3.0};
     for (int k = 0; k < length; k++) {
         const double nu = fmin(k, length - k) / (double)length, amplitude = sqrt(energy[k]) / amplitudes;
-        /* White noise is compressed to what the echoes' amplitude is. */
+        /* The energy of compressed white noise is in proportion to the echoes' amplitude. */
         const double echo = (1 - a->noise) * energy[k] / shown, noise = a->noise * amplitude;
         const double both = echo * image_gain(a, cells, pulse_bin_frequency(a, k, length)) + noise;
         const int n = (int)fmin(2 * BINS * nu, BINS - 1);

@@ -1,4 +1,4 @@
-/* The frequencies that error laws go over. */
+/* The frequencies that error laws sum over. */
 #ifndef SASBENCH_BACKPROJECTION_LAW_SPECTRUM_H
 #define SASBENCH_BACKPROJECTION_LAW_SPECTRUM_H
 
@@ -14,15 +14,16 @@ struct law_spectrum {
     int count;
     double nu[LAW_NODES];           /* cycles a sample, 0 to 1/2 */
     double weight[LAW_NODES];       /* of the image's energy; their sum is 1 */
-    double scattered[LAW_NODES];    /* where it has no focus: of the echoes' energy, in the same unit */
+    double scattered[LAW_NODES];    /* of the echoes' energy where the image has no focus, in the same unit */
     double amplitude[LAW_NODES][2]; /* of a pulse without noise, at nu and at -nu; their sum is 1 */
-    double reach;                   /* samples: from a pulse's middle, where its sum over these frequencies holds */
+    double reach;                   /* samples from a pulse's middle within which its sum over these frequencies is
+                                       valid */
 };
 /* `cells` is image_cells of the problem. False without memory, with a message. */
 bool law_spectrum(const struct acquisition *acquisition, double cells, struct law_spectrum *spectrum);
 
-/* Hz: the width of the band about the carrier that holds all of the image's energy but a share of `outside`; the
-   bandwidth at least. */
+/* Hz: the width of the band about the carrier with all of the image's energy but a share of `outside`; at least the
+   bandwidth. */
 double law_band(const struct law_spectrum *spectrum, const struct acquisition *acquisition, double outside);
 /* Hz: the width of the band about the carrier that kernels are fitted to: the bandwidth, and more of raw echoes whose
    pulse lies off the carrier. NAN without memory, with a message. */

@@ -1,5 +1,5 @@
-/* Products of spectra, and complex values parted (planes.h). This file is compiled once for each precision and
-   instruction set (BP_ISA names it). */
+/* Products of spectra, and complex values split into real and imaginary parts (planes.h). This file is compiled once
+   for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/planes.h"
 
 #include "common/lanes.h"

@@ -1,4 +1,4 @@
-/* What range compression does with whole records between its transforms and behind them (traces.h), in vectors. */
+/* Vector loops of range compression over whole records, between and behind its transforms (traces.h). */
 #ifndef SASBENCH_BACKPROJECTION_PLANES_H
 #define SASBENCH_BACKPROJECTION_PLANES_H
 
@@ -11,12 +11,12 @@
 struct planes {
     /* A spectrum, complex [length], times the filter h, complex [length], in its place. */
     void (*filter)(void *x, const void *h, size_t length);
-    /* A spectrum times factors of which those of negative frequencies are the conjugates, complex [length/2 + 1] from
-       frequency 0 to fs/2, into y. The bin at fs/2 is shared between both ends of the band: the factors' mean. */
+    /* A spectrum times factors, complex [length/2 + 1] from frequency 0 to fs/2, conjugated at negative frequencies,
+       into y. The bin at fs/2 belongs to both ends of the band: it takes the factors' mean. */
     void (*turn)(const void *x, const void *h, size_t length, void *y);
     /* A spectrum times real gains [length] into y; times the imaginary unit as well where they are `imaginary`. */
     void (*weigh)(const void *x, const void *gains, bool imaginary, size_t length, void *y);
-    /* Sums of `taps` neighbours, y[k] = sum over t of weights[t] x[k + t], complex [count]; `add`: to what y holds. */
+    /* Sums of `taps` neighbours, y[k] = sum over t of weights[t] x[k + t], complex [count]; `add`: add to y. */
     void (*convolve)(const void *x, const double *weights, int taps, size_t count, bool add, void *y);
     /* Complex values [count] into a block of `block` real parts and as many imaginary ones; 0 behind the last value. */
     void (*part)(const void *values, size_t count, size_t block, void *to);

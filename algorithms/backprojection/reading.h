@@ -4,8 +4,8 @@
 
 #include <stdbool.h>
 
-/* Of the speed of sound, the receivers' below which the delay's root (q + s)/e loses less than a bit where it cancels
-   (delay.h): the division of the other form is spared. */
+/* Receivers' speed over the speed of sound. Below it cancellation in the delay's root (q + s)/e costs less than a bit
+   (delay.h), and the division of the other form is avoided. */
 #define BP_SLOW 0.125
 
 /* How a value between samples is read. */

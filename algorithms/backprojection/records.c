@@ -6,8 +6,7 @@
 #include "backprojection/bp_engine.h"
 #include "backprojection/pairs/pairs.h"
 
-/* Rows hold, beside the samples at the delays, those that the taps reach, and one more that rounding to the nearest
-   may ask for. */
+/* Rows have the samples at the delays, those that the taps reach, and one more for rounding to the nearest. */
 struct traces_form bp_records_form(struct bp *bp)
 {
     const struct bp_table *table = &bp->table;
@@ -27,8 +26,8 @@ struct traces_form bp_records_form(struct bp *bp)
                                 .count = last - first + 1};
 }
 
-/* With AVX-512 as well 32 bytes at a time: values lie anywhere, and of 64 bytes each store would meet two cache
-   lines. */
+/* With AVX-512, too, 32 bytes at a time: values lie anywhere, and each store of 64 bytes would touch two cache lines.
+   */
 static const struct planes *const planes[][2] = {
     [ISA_BASELINE] = {&planes_float_baseline, &planes_double_baseline},
 #ifdef SASBENCH_X86_64

@@ -5,7 +5,8 @@
 
 #include "common/turns.h"
 
-/* H of Farrow branches of these gains (farrow_gains): what they make of exp(j 2 pi nu u), |u| <= 1/2, over it. */
+/* H of Farrow branches with these gains (farrow_gains): their value for exp(j 2 pi nu u), |u| <= 1/2, over the exact
+   one. */
 static double complex branches_response(int degree, const double *gains, double nu, double u)
 {
     static const double complex signs[] = {1, I};

@@ -1,4 +1,5 @@
-/* An interpolator's response: what it makes of exp(j 2 pi nu q) at the fraction delta of a sample, over that,
+/* An interpolator's response: its value for the signal exp(j 2 pi nu q) at the fraction delta of a sample, over the
+   exact value,
 
        H(nu, delta) = sum over k of  h_k(delta) exp(j 2 pi nu (k - delta)). */
 #ifndef SASBENCH_BACKPROJECTION_RESPONSE_H
@@ -15,7 +16,7 @@ struct response {
     double *taps;                             /* [in->taps] */
 };
 
-/* What it is given must outlive it. False without memory; then there is nothing to free. */
+/* The arguments must outlive it. False without memory; then there is nothing to free. */
 bool response_begin(const struct interpolator *interpolator, const struct law_spectrum *spectrum,
                     struct response *response);
 /* H at each frequency of the spectrum, list [spectrum->count]; the fraction, 0 to 1, is of upsampled samples. */

@@ -48,7 +48,7 @@ static bool filter_fill(const struct acquisition *acquisition, int length, compl
     return made || acquisition->compressed;
 }
 
-/* Linear interpolation between samples takes off sinc^2(nu) at nu cycles a sample. */
+/* Linear interpolation between samples multiplies by sinc^2(nu) at nu cycles a sample. */
 static void emphasise(int length, complex_real *filter)
 {
     for (int k = 1; k < length; k++) {
@@ -103,7 +103,7 @@ static int convolved(const struct traces_shape *shape)
     return shape->guard < 15 ? count : (count + 15) / 16 * 16;
 }
 
-/* Filter, factors, scratch and FFTW's plans, and what they count in the shape. */
+/* Filter, factors, scratch and FFTW's plans, and their counts in the shape. */
 static enum status transforms_plan(struct traces *traces, const struct acquisition *acquisition, bool preemphasis,
                                    int threads)
 {
@@ -122,7 +122,7 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
                              reach, traces->taps);
     }
     traces->each = (2 + (size_t)shape->upsample) * pitch + 2 * traces->wide;
-    /* Scratch, filter, factors, the pulse's spectrum, and as much as FFTW's plans may hold. */
+    /* Scratch, filter, factors, the pulse's spectrum, and an upper limit for FFTW's plans. */
     enum status status =
         memory_check(((threads + 1.0) * (double)traces->each + length + (double)factors) * sizeof(complex_real)
                          + (double)gains * sizeof(real) + (double)length * sizeof(double complex),
@@ -167,7 +167,7 @@ static int period_of(const struct acquisition *acquisition, const struct traces_
     return acquisition->compressed ? n : fft_length_quick((long long)n + acquisition->pulse_length - 1);
 }
 
-/* What of a record is read, and what a row holds of it. */
+/* The samples of a record that are read, and those in a row. */
 static void shape_cut(const struct acquisition *acquisition, const struct traces_form *form, struct traces_shape *shape)
 {
     const int all = acquisition->samples, pulse = acquisition->compressed ? 1 : acquisition->pulse_length;

@@ -13,7 +13,7 @@ struct traces_form {
     int upsample;     /* >= 1 */
     int degree;       /* > 0: of Farrow branches (farrow.h), u in upsampled samples */
     int guard;        /* upsampled samples before and behind the record */
-    bool preemphasis; /* the spectrum is divided by sinc^2(f/fs), which linear interpolation takes off it */
+    bool preemphasis; /* the spectrum is divided by sinc^2(f/fs), the loss of linear interpolation */
     int first, count; /* the samples [first, first + count) that a row holds; count 0: all */
 };
 
@@ -23,14 +23,14 @@ struct traces_form {
    degree + 1 of these one behind the other, the branches: the first two from transforms, the others from their
    neighbours (farrow.h).
 
-   Where a row holds part of the record and its values depend on a stretch of it only, nothing else of the record is
-   read: raw echoes that are compressed and no more read a pulse's length behind the row's samples, and the transform is
-   so much shorter; the values are the same but for rounding. Whatever is read between the samples (upsample > 1,
-   degree > 0), or emphasised, depends on the whole record, which is transformed as one.
+   If a row holds part of the record and its values depend on a stretch of it only, only that stretch is read. Raw
+   echoes that are only compressed read a pulse's length behind the row's samples. The transform is shorter, and the
+   values are the same but for rounding. Values between the samples (upsample > 1, degree > 0) or with preemphasis
+   depend on the whole record, which is transformed as one.
 
    Zero padding is done by phases: values i = n upsample + phase are the samples n of the signal phase/upsample samples
    earlier, hence an inverse transform of the record's own length L, of its spectrum times exp(j 2 pi nu
-   phase/upsample). `upsample` short transforms stand for one long one, and each is made for itself. */
+   phase/upsample). `upsample` short transforms replace one long one, and each is made for itself. */
 struct traces_shape {
     int first, samples; /* of the record, in a row */
     int upsample, guard;
@@ -55,7 +55,7 @@ struct traces_build {
                         struct traces_shape *shape, struct traces **traces);
     /* Turn one record, complex [the acquisition's samples], into a row; `thread` < threads names the scratch to use. */
     void (*fill)(const struct traces *traces, int thread, const void *record, void *row);
-    /* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane,
+    /* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and from it one plane,
        number branch times upsample + phase, branch < 2: complex [period], of which value n is fine sample (from + n)
        upsample + phase. Both arrays begin at cache lines; the spectrum is not changed. */
     void (*spectrum)(const struct traces *traces, int thread, const void *record, void *spectrum);

@@ -1,4 +1,4 @@
-/* The part of a problem that a window asks for: its records, and memory of which it needs a part (bp_engine.h). */
+/* The part of a problem for a window: its records, and memory that it needs a part of (bp_engine.h). */
 #include <stdlib.h>
 
 #include "backprojection/bp_engine.h"

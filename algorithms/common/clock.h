@@ -9,7 +9,7 @@ struct stages;
 /* The threads' time in each stage, as shares of the time that passed. */
 void stages_share(struct stages *stages, int count, const char *const *names, const double *seconds);
 
-/* From now on seconds_now is `clock`, in s. Call it before threads that time something. */
+/* Replace seconds_now by `clock`, in s. Call it before any thread measures time. */
 void clock_set(double (*clock)(void));
 
 #endif

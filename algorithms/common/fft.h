@@ -1,4 +1,4 @@
-/* What the files that transform share (for each precision). */
+/* Shared by the files with Fourier transforms (for each precision). */
 #ifndef SASBENCH_COMMON_FFT_H
 #define SASBENCH_COMMON_FFT_H
 
@@ -12,7 +12,7 @@ static inline void fft_destroy(void *plan)
     FFTW(destroy_plan)(plan);
 }
 
-/* Into another array, which spares FFTW copies of its own, or in place. ESTIMATE: the same algorithm, hence the same
+/* Into another array, which saves FFTW copies of its own, or in place. ESTIMATE: the same algorithm, hence the same
    bits, at every planning. */
 static inline void *fft_line(struct store *store, int length, complex_real *from, complex_real *to, int sign)
 {

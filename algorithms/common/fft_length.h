@@ -9,11 +9,11 @@ int fft_length(long long n);
 int fft_length_fast(long long n);
 
 /* The length of the quickest transform of n or more values, up to a quarter longer than the last: most often a power of
-   two, or five times one. For what is as long as its transforms alone, for all else grows with the length. */
+   two, or five times one. Only where nothing but the transforms grows with the length. */
 int fft_length_quick(long long n);
 
-/* Seconds a FLOP of a transform of n, over those of a short power of two: 1 to 6 by its prime factors and its length.
-   Measured where FFTW plans by estimate; of one length they may be 1.6 times less or more. */
+/* Seconds a FLOP of a transform of n, over those of a short power of two: 1 to 6, by its prime factors and its length.
+   Measured where FFTW plans by estimate; for a single length it errs by up to a factor of 1.6. */
 double fft_slowness(int n);
 
 /* FLOPs of one complex transform, 5 n log2 n: the count that both papers and FFTW's own benchmark use. */

@@ -1,5 +1,4 @@
-/* Polynomials that stand for smooth functions of one variable: their values at Chebyshev's nodes give the
-   coefficients. */
+/* Polynomials through values of smooth functions of one variable at Chebyshev's nodes. */
 #ifndef SASBENCH_COMMON_FIT_H
 #define SASBENCH_COMMON_FIT_H
 
@@ -19,8 +18,8 @@ struct fit_nodes {
     double powers[FIT_DEGREE + 1][FIT_DEGREE + 1];
 };
 
-/* What stands at bin j of a Stolt interpolation: the place in the spectrum (bins), the phase (cycles, whole turns
-   included), the weight. */
+/* Bin j of a Stolt interpolation: the place in the spectrum (bins), the phase (cycles, whole turns included), the
+   weight. */
 struct fit_cell {
     double place, cycles, weight;
 };
@@ -37,8 +36,8 @@ static inline __attribute__((always_inline)) double fit_value(const double *c, d
     return c[0] + y * (c[1] + y * (c[2] + y * (c[3] + y * (c[4] + y * c[5]))));
 }
 
-/* Fits `exact` over the bins `first` to `last`. False where the polynomials are off by more than 1e-6 bins, 1e-7
-   cycles or 1e-6 of the weight where they are held against it: wide bands at grazing angles. */
+/* Fits `exact` over the bins `first` to `last`. False where the polynomials err by more than 1e-6 bins, 1e-7 cycles or
+   1e-6 of the weight at the points checked: wide bands at grazing angles. */
 static inline __attribute__((always_inline)) bool fit_make(const struct fit_nodes *n, fit_function *exact,
                                                            const void *of, double first, double last, struct fit *fit)
 {

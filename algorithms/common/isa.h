@@ -1,4 +1,4 @@
-/* Which of the builds of a vectorised file this machine runs. */
+/* The choice among the builds of a vectorised file on this machine. */
 #ifndef SASBENCH_COMMON_ISA_H
 #define SASBENCH_COMMON_ISA_H
 
@@ -13,7 +13,7 @@ enum isa isa_choose(void);
 enum status isa_check(void);
 const char *isa_name(enum isa isa);
 
-/* Of a function that is built for each precision and instruction set: its declarations, and the build of a precision
+/* For a function that is built for each precision and instruction set: its declarations, and its build of a precision
    for this machine. */
 #define ISA_DECLARE(type, name)                                                                                        \
     type name##_float_baseline, name##_double_baseline, name##_float_v3, name##_double_v3, name##_float_v4,            \

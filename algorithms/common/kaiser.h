@@ -1,5 +1,5 @@
-/* The Kaiser-Bessel kernel of Stolt interpolations: values of a spectrum between its bins, from `taps` bins. What it
-   does to the samples, a smooth weight, is taken off beforehand (kaiser_transform). */
+/* The Kaiser-Bessel kernel of Stolt interpolations: values of a spectrum between its bins, from `taps` bins. The
+   samples are first divided by its smooth weight (kaiser_transform). */
 #ifndef SASBENCH_COMMON_KAISER_H
 #define SASBENCH_COMMON_KAISER_H
 
@@ -9,11 +9,11 @@ double kaiser_shape(int taps, double oversampling);
 /* The kernel `distance` bins from its middle: 1 there, 0 from taps/2 on. */
 double kaiser_value(int taps, double shape, double distance);
 
-/* What the kernel weights a sample by that lies `place` (a fraction of the transform) from its middle. */
+/* The kernel's weight of a sample that lies `place` (a fraction of the transform) from its middle. */
 double kaiser_transform(int taps, double shape, double place);
 
-/* Relative error of an interpolation whose samples fill 1/oversampling of the transform and had their weights taken
-   off: exp(-pi taps sqrt(1 - 1/oversampling)), as of any such kernel, but for a factor of about 1. */
+/* Relative error of an interpolation whose samples fill 1/oversampling of the transform and are divided by their
+   weights: exp(-pi taps sqrt(1 - 1/oversampling)), as of any such kernel, but for a factor of about 1. */
 double kaiser_error(int taps, double oversampling);
 
 #endif

@@ -16,8 +16,7 @@ typedef real vector_real __attribute__((vector_size(VECTOR_BYTES), aligned(sizeo
 #define HOLD(vector) ((void)0)
 #endif
 
-/* Take a pointer as it is: else the compiler splits it into a base and an index, which it adds up anew for each
-   load. */
+/* Keep a pointer whole: else the compiler splits it into a base and an index and adds them for each load. */
 #define OPAQUE(pointer) __asm__("" : "+r"(pointer))
 
 #endif

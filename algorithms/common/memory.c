@@ -11,7 +11,7 @@
 
 enum { LINE = 64 /* bytes of the cache's */ };
 
-/* Memory and swap that the machine could give, by Linux's own estimate; INFINITY where it does not tell. */
+/* Available memory and swap, by Linux's own estimate; INFINITY without one. */
 static double machine_free(void)
 {
     double free_bytes = 0, kilobytes;
@@ -25,7 +25,7 @@ static double machine_free(void)
     return free_bytes > 0 ? free_bytes : INFINITY;
 }
 
-/* What the limit on the process's address space leaves. */
+/* The rest within the limit on the process's address space. */
 static double limit_free(void)
 {
     struct rlimit limit;
@@ -85,7 +85,7 @@ void *memory_sparse(size_t bytes)
     if (memory == MAP_FAILED)
         return NULL;
 #ifdef MADV_NOHUGEPAGE
-    madvise(memory, all, MADV_NOHUGEPAGE); /* advice: huge pages take room for what is not written */
+    madvise(memory, all, MADV_NOHUGEPAGE); /* advice: huge pages take room for unwritten parts, too */
 #endif
     *(size_t *)memory = all;
     return memory + page;

@@ -1,4 +1,4 @@
-/* The processor's own limit: what fractions of peak are measured against. */
+/* The processor's own limit, the reference for fractions of peak. */
 #ifndef SASBENCH_COMMON_PEAK_H
 #define SASBENCH_COMMON_PEAK_H
 

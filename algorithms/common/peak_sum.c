@@ -1,9 +1,9 @@
-/* Multiply-adds without memory (peak.h): enough independent chains to hide their latency, few enough for the
+/* Multiply-adds without memory (peak.h): enough independent chains to hide their latency, but not more than the
    registers. */
 #include "common/lanes.h"
 #include "common/peak.h"
 
-/* Variables of their own: an array would live in memory. */
+/* Separate variables: the compiler keeps an array in memory. */
 #define CHAINS(each) each(0) each(1) each(2) each(3) each(4) each(5) each(6) each(7) each(8) each(9) each(10) each(11)
 enum { COUNT = 12 };
 

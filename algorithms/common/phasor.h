@@ -46,9 +46,8 @@ static inline void phasor_eighth(real x, real *c, real *s)
 #endif
 }
 
-/* From the half angle's S = sqrt(2) sin(pi f) and C = sqrt(2) cos(pi f), by minimax polynomials: cos = 1 - S^2 and
-   sin = S C, so that no quadrant has to be told from another, in short chains of products. For `real` and vectors of
-   it. */
+/* From the half angle's S = sqrt(2) sin(pi f) and C = sqrt(2) cos(pi f), by minimax polynomials: cos = 1 - S^2 and sin
+   = S C, without a choice of quadrant, in short chains of products. For `real` and vectors of it. */
 #if REAL_DOUBLE
 #define PHASOR_SINE(z, z2)                                                                                             \
     ((4.4428829381583661 + z * -7.308249499995437) + z2 * (3.6064765714705578 + z * -0.84748802480989638)              \

@@ -1,4 +1,4 @@
-/* The compressed pulse's spectrum, which part of the sampled band holds it, and what images show of it. */
+/* The compressed pulse's spectrum, its part of the sampled band, and its weights in images. */
 #ifndef SASBENCH_COMMON_PULSE_BAND_H
 #define SASBENCH_COMMON_PULSE_BAND_H
 
@@ -16,26 +16,26 @@ struct pulse_band {
    Errors: STATUS_FAILED without memory. */
 enum status pulse_band_find(const struct acquisition *acquisition, int transform_length, struct pulse_band *band);
 
-/* The energy spectrum of the compressed pulse of raw echoes, |replica's spectrum|^4, as if the replica's magnitudes
-   added up to 1: energy[length] in FFTW's order, bin k at k fs/length; length >= pulse_length. Returned memory is the
-   caller's to free; NULL without memory, with STATUS_FAILED's message set. */
+/* The energy spectrum of the compressed pulse of raw echoes, |replica's spectrum|^4, with the sum of the replica's
+   magnitudes scaled to 1: energy[length] in FFTW's order, bin k at k fs/length; length >= pulse_length. The caller
+   frees the result; NULL without memory, with STATUS_FAILED's message set. */
 double *pulse_energy(const struct acquisition *acquisition, int length);
 
 /* The matched filter of raw echoes for transforms of `length` >= pulse_length: conj(P)/(length sum|p|^2), in FFTW's
-   order. To be given to fftw_free; NULL without memory. */
+   order. Freed by fftw_free; NULL without memory. */
 double complex *pulse_filter(const struct acquisition *acquisition, int length);
 
-/* Hz, -fs/2 to fs/2: of its bin k. */
+/* Frequency of its bin k, Hz, -fs/2 to fs/2. */
 double pulse_bin_frequency(const struct acquisition *acquisition, int k, int length);
 
-/* The image of a target is as wide along the track as its wavelength makes it: of each pair's energy at low
-   frequencies, which a pulse of few cycles has in its flanks, images show more. */
+/* The image of a target is wider along the track at longer wavelengths. So images weight each pair's energy at low
+   frequencies more, as in the flanks of a pulse with a small number of cycles. */
 
-/* The width of the grids where errors count, the widest of them, over that of a target's image at the carrier. */
+/* The width of the widest grid where errors count, over that of a target's image at the carrier. */
 double image_cells(const struct problem *problem);
 
-/* Energy in an image of that many cells at fc + `frequency` Hz over that at fc, of echoes that have the same at both:
-   as |fc / (fc + frequency)|, unless the grid ends first. */
+/* Energy in an image of `cells` cells at fc + `frequency` Hz over that at fc, of echoes with equal energy at both: as
+   |fc / (fc + frequency)|, unless the grid ends first. */
 double image_gain(const struct acquisition *acquisition, double cells, double frequency);
 
 #endif

@@ -1,5 +1,5 @@
 /* Large arrays that are not read again soon, written past the caches: a line that is written whole is then not read
-   first. Where the processor has no such stores these are plain ones. */
+   first. Without such stores in the processor these are plain ones. */
 #ifndef SASBENCH_COMMON_STREAM_H
 #define SASBENCH_COMMON_STREAM_H
 
@@ -43,7 +43,7 @@ static inline void stream_copy(void *to, const void *from, size_t bytes)
     memcpy((char *)to + at, (const char *)from + at, bytes - at);
 }
 
-/* Before another thread is told that all is written. */
+/* Before another thread may read the array. */
 static inline void stream_end(void)
 {
 #ifdef __SSE2__

@@ -24,8 +24,8 @@ static inline double square(double complex a)
     return creal(a) * creal(a) + cimag(a) * cimag(a);
 }
 
-/* sqrt(1 - |both|^2/power): what two signals do not have in common. What rounding makes negative is 0; NaN stays, which
-   fmax would make 0. */
+/* sqrt(1 - |both|^2/power): the relative difference of two signals after one best gain. Values below 0 by rounding give
+   0; NaN stays (fmax would make it 0). */
 static inline double unlike(double complex both, double power)
 {
     const double left = 1 - square(both) / power;

@@ -1,4 +1,4 @@
-/* The recording geometry: memory, the checks that every later stage relies on, and the shape of the track. */
+/* The recording geometry: its memory, its checks, and the shape of the track. */
 #include "contract/acquisition.h"
 
 #include <float.h>
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #define FC_LEAST         1e-6 /* of fs: turns and samples then stay within a float's range of each other */
-#define SOUND_SPEED_MOST 1e9  /* m/s, as in scene files: more than that of light; its square must be finite */
+#define SOUND_SPEED_MOST 1e9  /* m/s, as in scene files: above the speed of light; its square must be finite */
 
 enum status acquisition_allocate(struct acquisition *acquisition)
 {
@@ -163,7 +163,7 @@ static enum status check_pulse(const struct acquisition *a, const char *place)
     return STATUS_OK;
 }
 
-/* The later of both ends of ping p's record in magnitude: what bounds the delays that can be imaged. */
+/* The end of ping p's record with the greater magnitude: a bound of the delays that can be imaged. */
 static double largest_delay(const struct acquisition *a, int p)
 {
     return fmax(fabs(a->t0[p]), fabs(a->t0[p] + (a->samples - 1) / a->fs));

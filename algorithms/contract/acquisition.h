@@ -1,4 +1,4 @@
-/* What was recorded, how, and where: everything about the echoes but the samples themselves. */
+/* The recording: all about the echoes but the samples themselves. */
 #ifndef SASBENCH_CONTRACT_ACQUISITION_H
 #define SASBENCH_CONTRACT_ACQUISITION_H
 
@@ -31,18 +31,19 @@ struct acquisition {
     struct vector *tx;           /* [pings] m: transmitter at emission */
     struct vector *rx;           /* [pings][receivers] m: receivers at the transmitter's emission */
     struct vector *velocity;     /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
-    double pri;                  /* s: from each ping to the next; 0 = unknown */
-    double tx_length, rx_length; /* m: element lengths along the track; 0 = unknown */
-    double echo_sine;            /* the echoes come from |sin theta_t| <= this; 0 = unknown, INFINITY = from anywhere */
-    double echo_squint; /* rad: theta_t counts from the beam's axis, which points so far ahead of broadside (r > 0) */
-    bool echo_tapers;   /* and their amplitude falls as both elements' sinc does */
-    bool noisy;         /* noise, which comes from anywhere, is in the samples, or may be */
-    double noise; /* of the compressed echoes' energy, the share that is white noise, as far as it is known; 0: none */
-    double aperture_limit;   /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
-    struct target_area area; /* what is to be seen; a filter may take off the echoes of the rest */
-    bool compressed;         /* the samples are range compressed: a unit target peaks at 1 */
-    int pulse_length;        /* K: samples of the replica; 0 if compressed */
-    double complex *pulse;   /* [pulse_length] replica at fs, beginning at emission; NULL if compressed */
+    double pri;                  /* s: from each ping to the next; 0 = not given */
+    double tx_length, rx_length; /* m: element lengths along the track; 0 = not given */
+    double echo_sine;            /* the echoes come from |sin theta_t| <= this; 0 = not given, INFINITY = from anywhere
+                                    */
+    double echo_squint;          /* rad: the beam's axis, from which theta_t counts, ahead of broadside (r > 0) */
+    bool echo_tapers;            /* and their amplitude falls as both elements' sinc does */
+    bool noisy;                  /* the samples contain, or may contain, noise, which comes from anywhere */
+    double noise;                /* share of white noise in the compressed echoes' energy, where known; 0: none */
+    double aperture_limit;       /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
+    struct target_area area;     /* the area of interest; a filter may remove the echoes from elsewhere */
+    bool compressed;             /* the samples are range compressed: a unit target peaks at 1 */
+    int pulse_length;            /* K: samples of the replica; 0 if compressed */
+    double complex *pulse;       /* [pulse_length] replica at fs, beginning at emission; NULL if compressed */
 };
 
 /* Allocate the arrays for `samples`, `receivers`, `pings` (set beforehand) and `pulse_length`, zeroed. Errors:
@@ -50,20 +51,20 @@ struct acquisition {
 enum status acquisition_allocate(struct acquisition *acquisition);
 void acquisition_free(struct acquisition *acquisition);
 
-/* Check every promise made above (ranges, finite numbers, |velocity| < c, phase precise enough: 8 pi fc tau eps <=
+/* Check every condition stated above (ranges, finite numbers, |velocity| < c, phase precise enough: 8 pi fc tau eps <=
    1e-3). `place` (a file name) begins the message. Errors: STATUS_INVALID. */
 enum status acquisition_check(const struct acquisition *acquisition, const char *place);
 
-/* A copy, to be freed, as it is seen from axes turned by `angle` (rad) about the origin: x' = x cos - y sin,
-   y' = x sin + y cos. Errors: STATUS_FAILED without memory. */
+/* A copy, freed by the caller, in axes turned by `angle` (rad) about the origin: x' = x cos - y sin, y' = x sin + y
+   cos. Errors: STATUS_FAILED without memory. */
 enum status acquisition_turn(const struct acquisition *acquisition, double angle, struct acquisition *out);
 
 /* Unit vector along the track at ping p: the difference of the neighbouring transmitter positions; the velocity's
    direction for a single ping; +x where both vanish. */
 struct vector acquisition_heading(const struct acquisition *acquisition, int ping);
 
-/* Unit vector normal to the plane that theta_t of ping p counts from: the heading, turned by the squint where the beam
-   has one, so that the plane holds the beam's axis (r > 0). A squint points towards +x whichever way the track runs. */
+/* Unit vector normal to the plane that theta_t of ping p counts from: the heading, turned by the beam's squint, so that
+   the plane contains the beam's axis (r > 0). A squint points towards +x whichever way the track runs. */
 struct vector acquisition_normal(const struct acquisition *acquisition, int ping);
 
 /* A uniform straight track: tx(p).x = x_first + p spacing, rx(p, m).x - tx(p).x = offset(m), y = z = 0, one velocity
@@ -73,11 +74,11 @@ struct straight_track {
     double speed;            /* m/s along +x, of the receivers during propagation */
 };
 
-/* Wavelengths: how far off such a track still counts as one. */
+/* Wavelengths: the tolerance of a uniform straight track. */
 #define ACQUISITION_UNEVEN_MOST 1e-3
 
-/* m: how far transmitters, receivers, starts of record (times the sound speed) and velocities (times the longest delay)
-   lie off the uniform straight track nearest to them, *track; INFINITY where all pings are in one place. */
+/* m: the greatest distance of transmitters, receivers, starts of record (times the sound speed) and velocities (times
+   the longest delay) from the nearest uniform straight track, *track; INFINITY where all pings are in one place. */
 double acquisition_unevenness(const struct acquisition *acquisition, struct straight_track *track);
 
 /* True when the track is uniform and straight; fills *track (may be NULL). */

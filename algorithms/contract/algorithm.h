@@ -1,4 +1,4 @@
-/* What an imaging algorithm is: the only header that a contributor must read.
+/* The interface of an imaging algorithm: the only header that a contributor must read.
 
    An algorithm is one constant struct in one file, `NAME.c` defining `const struct algorithm NAME`, whose name is also
    the name on the command line. Adding NAME to the list in algorithms/meson.build adds the source, the registry entry,
@@ -8,7 +8,7 @@
    - `plan` does all that depends on geometry and settings only: tables, FFTW plans, scratch memory. It is timed apart.
    - `execute` is the timed part. It goes from the samples in memory to the image in memory, allocates nothing, writes
      every pixel, gives the same bits for any number of threads, and may be called any number of times.
-   - Neither prints, exits or keeps state outside the plan. What goes wrong is reported with status_set.
+   - Neither prints, exits or keeps state outside the plan. Errors are reported with status_set.
    - Threads are OpenMP's; a plan is executed with at most the omp_get_max_threads() it was made with.
    - The acquisition and the patches outlive the plan; samples and pixels belong to the caller. */
 #ifndef SASBENCH_CONTRACT_ALGORITHM_H
@@ -31,16 +31,16 @@ struct grid {
     int x_count;            /* >= 1 */
     double r_first, r_step; /* m, r_step > 0; r of either sign */
     int r_count;            /* >= 1 */
-    double angle_rad;       /* within +-pi/2; what an algorithm cannot image turned, it refuses */
+    double angle_rad;       /* within +-pi/2; an algorithm refuses turned grids that it cannot image */
 };
 
-/* Where row i and column j lie, which need not be whole numbers. */
+/* The place of row i and column j, which need not be whole numbers. */
 struct vector grid_point(const struct grid *grid, double i, double j);
 /* The inverse: (x', r', 0) of a place in the track's axes. */
 struct vector grid_coordinates(const struct grid *grid, double x, double r);
 /* Does a place of the track's axes lie on a pixel, a step wide along both axes? */
 bool grid_holds(const struct grid *grid, double x, double r);
-/* The track's columns from *first to *last (m) that hold something of the pixels. */
+/* The range of x in the track's axes, *first to *last (m), that the pixels cover. */
 void grid_columns(const struct grid *grid, double *first, double *last);
 
 struct target {
@@ -55,8 +55,8 @@ struct pixel_window {
 /* The grid of a part of the pixels. Its axes begin at a pixel of the whole, rounded. */
 struct grid grid_part(const struct grid *grid, const struct pixel_window *window);
 
-/* One imaging task: every patch of the image is wanted, and nothing else; or of the only patch a window alone, whose
-   pixels then have the bits that they have in the whole image. */
+/* One imaging task: all patches of the image; or a window of the only patch, whose pixels have the same bits as in the
+   whole image. */
 struct problem {
     const struct acquisition *acquisition;
     int patch_count;                   /* >= 1 */
@@ -74,8 +74,8 @@ struct echoes {
     const struct acquisition *acquisition;
     enum precision precision;
     const void *samples; /* complex float or double [pings][receivers][samples] */
-    int exponent;        /* recorded were the samples times 2^exponent, 0 unless they would not fit the precision;
-                                       whoever calls execute multiplies the image, an algorithm need not look */
+    int exponent;        /* the recording is the samples times 2^exponent, 0 unless it would not fit the precision; the
+                            caller of execute multiplies the image, an algorithm ignores it */
 };
 
 /* The image: sum over pings and receivers of the compressed echo at the exact delay times exp(+j 2 pi fc tau), without
@@ -87,7 +87,7 @@ struct image {
     void **pixels; /* [patch_count] of complex float or double [r_count][x_count] */
 };
 
-/* Where the seconds of one execute went. There are 12 stages at most: the time of further names goes to the last. */
+/* Where the seconds of one execute went. At most 12 stages: the time of further names goes to the last. */
 struct stages {
     int count;
     double mark; /* monotonic clock at the last stages_begin or stages_end, s */
@@ -101,7 +101,7 @@ void stages_begin(struct stages *stages);                 /* forget all, start t
 void stages_end(struct stages *stages, const char *name); /* time since the last mark goes to `name` (summed) */
 double seconds_now(void);                                 /* monotonic clock, s */
 
-/* What the plan will do, and what it leaves out. */
+/* The work of a plan, and the work that it leaves out. */
 struct work {
     double flops; /* counted from the plan: 5 N log2 N an FFT, machine-independent */
     double pairs; /* pixel-pulse pairs summed; 0 where an algorithm has none */
@@ -110,8 +110,8 @@ struct work {
         const char *source; /* "BP22 Eq. (11)"; NULL ends the list */
         double flops;
     } published[3];    /* the papers' formulas for this task, the algorithm's own paper first */
-    char engine[96];   /* which of several ways the plan chose: "general" */
-    char skipped[256]; /* what the plan left out because the scene does not need it; may be empty */
+    char engine[96];   /* the plan's choice among several engines: "general" */
+    char skipped[256]; /* work left out because the scene does not need it; may be empty */
 };
 
 enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE };
@@ -126,7 +126,7 @@ struct param {
     const char *const *choices; /* NULL-terminated names of a choice, else NULL */
     const char *sweep;          /* the values that `sweep` runs, separated by blanks; may be NULL */
     bool terse;                 /* left out of the options text while it has its default */
-    bool hidden; /* the plain path that tests compare with and the papers' times are of: no user's setting */
+    bool hidden;                /* the plain path, for tests and the papers' times: no user's setting */
 };
 
 /* A row begins with  {PARAM(struct options, taps), .summary = ...  for a number, an int or a double, or with
@@ -144,7 +144,7 @@ enum trait {
     TRAIT_EXACT = 1,          /* the image equals `reference` to 1e-8 in double */
     TRAIT_ANY_TRACK = 2,      /* images any track in space, not only uniform straight ones */
     TRAIT_APERTURE_LIMIT = 4, /* honours aperture_limit pixel by pixel */
-    TRAIT_WINDOW = 8          /* forms a window of an image, and `reads` says what it needs */
+    TRAIT_WINDOW = 8          /* forms a window of an image; `reads` lists the pings it needs */
 };
 
 struct algorithm {
@@ -152,38 +152,37 @@ struct algorithm {
     unsigned traits;                        /* of enum trait */
     size_t options_size;                    /* of the options struct; 0 without params */
     const struct param *params;             /* NULL-terminated; NULL without options */
-    const void *method; /* what its engine knows it by, handed to the callbacks; NULL for one that has its own */
+    const void *method; /* its engine's description of it, passed to the callbacks; NULL: its callbacks are its own */
 
-    /* Fill list[room] with what the problem must fulfil, and return the number; known before any work, and the same
-       that plan refuses by. NULL: conditions_general. */
+    /* Fill list[room] with the conditions of the problem, before any work, and return the number. `plan` refuses by the
+       same conditions. NULL: conditions_general. */
     int (*conditions)(const struct problem *problem, const void *method, const void *options, struct condition *list,
                       int room);
-    /* The relative L2 error that an image by these settings is to keep; a row that does not warns. NAN, or NULL:
-       none is promised. */
+    /* The promised relative L2 error of an image by these settings; a row with more warns. NAN, or NULL: no promise. */
     double (*promise)(const void *options);
-    /* What the settings will make of a problem, without a plan; far cheaper than one, but for range migration. Errors:
-       STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: nothing is known beforehand, and
-       no planner chooses the algorithm. */
+    /* Predict error and cost of the settings for a problem, without a plan; far cheaper than one, but for range
+       migration. Errors: STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: no
+       prediction, and no planner chooses the algorithm. */
     enum status (*forecast)(const struct problem *problem, const void *method, const void *options,
                             struct forecast *forecast);
-    /* The counts alone, where errors take longer: of those, what costs nothing. Errors: as forecast; what only a
-       forecast finds out is not refused. NULL: `forecast` counts. */
+    /* The counts alone, where errors take longer; of the errors, those that cost nothing. Errors: as forecast, without
+       the reasons that only a forecast finds. NULL: `forecast` counts. */
     enum status (*cost)(const struct problem *problem, const void *method, const void *options,
                         struct forecast *forecast);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
     enum status (*plan)(const struct problem *problem, const void *method, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
     enum status (*execute)(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
-    /* Set read[pings] where the plan reads a ping's records; those of others may hold anything. NULL: all. */
+    /* Set read[pings] where the plan reads a ping's records; other records may have any values. NULL: all. */
     void (*reads)(const void *plan, bool *read);
-    struct work (*work)(const void *plan); /* may take its time, to count what the timed plan need not know */
+    struct work (*work)(const void *plan); /* may be slow: it counts what the timed plan does not need */
     void (*destroy)(void *plan);           /* destroy(NULL) does nothing */
 };
 
 /* The registered algorithms in the order of algorithms/meson.build; NULL ends the list. */
 extern const struct algorithm *const algorithms[];
 
-/* Its callbacks, called; costs are those of the forecast, conditions the general ones, where it has none of its own. */
+/* Call its callbacks; without its own, costs are the forecast's and conditions the general ones. */
 static inline enum status algorithm_plan(const struct algorithm *algorithm, const struct problem *problem,
                                          const void *options, void **plan)
 {

@@ -1,5 +1,5 @@
-/* The conditions that algorithms share (condition.h). Back projection forms a correct sum whatever they say: what fails
-   here shows in its image as ghosts or overlaid echoes, and is not its error. */
+/* The conditions that algorithms share (condition.h). Back projection forms a correct sum in any case: an unmet
+   condition appears in its image as ghosts or overlaid echoes, which are not its error. */
 #include "contract/condition.h"
 
 #include <float.h>
@@ -12,7 +12,7 @@
 #include "contract/algorithm.h"
 #include "contract/delay.h"
 
-/* The beam of echoes that do not say theirs: where the transmitter's power is half of that broadside, in lambda/D. */
+/* The beam where none is given: where the transmitter's power is half of that at broadside, in lambda/D. */
 static const double LOBE = 0.443;
 static const double LOBES = 3; /* of a beam that tapers are followed this far, in nulls */
 
@@ -208,7 +208,7 @@ int algorithm_conditions(const struct algorithm *algorithm, const struct problem
 
 /* ---- delays ---- */
 
-/* What the pixels ask of the records, worst over some places of the patches and some pings that see them. */
+/* Requirements of the pixels on the records, the worst of some places of the patches and some pings that see them. */
 struct extent {
     double delay;  /* s: the longest that lies in a record */
     double places; /* samples: the largest magnitude of a sample coordinate */
@@ -216,8 +216,8 @@ struct extent {
     int ends[2];   /* receivers at the ends of the array, however it lies and is numbered */
 };
 
-/* m: how far ping p stands from where it would see a place on its beam's axis; beyond the axis it is negative. Seen are
-   places within the beam's sine of their distance. */
+/* m: the distance of ping p from the position that has a place on its beam's axis, negative beyond the axis. A place is
+   seen within the beam's sine times its distance. */
 static double off_axis(const struct acquisition *a, int p, struct vector place, double *distance)
 {
     const struct vector axis = axis_about(a, p), way = difference(a->tx[p], place);
@@ -240,7 +240,7 @@ bool condition_sees(const struct acquisition *a, int ping, struct vector place)
     return sees(a, condition_beam_sine(a), ping, place);
 }
 
-/* The first and the last ping that see a place, and the one nearest to seeing it on the axis; -1: none does. */
+/* The first and the last ping that see a place, and the one with the place nearest to its axis; -1: none. */
 static void pings_seeing(const struct acquisition *a, double sine, struct vector place, int pings[3])
 {
     double nearest = INFINITY, range;
@@ -261,8 +261,8 @@ static struct vector moved(struct vector place, struct vector axis, double m)
     return (struct vector){place.x + m * axis.x, place.y + m * axis.y, place.z + m * axis.z};
 }
 
-/* Pings lie closer to the edge of the beam for other columns than for those that are looked at: the place as far along
-   the track, up to where the next ping, which does not see `place`, is beside it. */
+/* For other columns, pings lie closer to the edge of the beam than for the tested ones: move the place along the track
+   as far as `ping` sees it, at most by the way to `next`, which does not see `place`. */
 static struct vector place_at_edge(const struct acquisition *a, double sine, int ping, int next, struct vector place)
 {
     const struct vector axis = axis_about(a, ping);
@@ -396,8 +396,8 @@ static double interval_after(const struct acquisition *a, int p)
     return speed > 0 ? way / speed : 0;
 }
 
-/* s: the time from ping to ping; where it is not stated the median of what the ways take, which a way from one leg to
-   the next does not change. 0: unknown, nothing moves. */
+/* s: the time from ping to ping; if it is not given, the median of the ways' times, which a turn between two legs does
+   not change. 0: not given, and nothing moves. */
 static double ping_interval(const struct acquisition *a)
 {
     double low = 0, high = 0;

@@ -1,5 +1,5 @@
-/* How pings and receivers sample the track (condition.h): which places they have along it, gaps between them, and the
-   wavenumbers that they tell apart. */
+/* How pings and receivers sample the track (condition.h): their places along it, gaps between them, and the wavenumbers
+   that they resolve. */
 #include <math.h>
 #include <stdio.h>
 
@@ -92,9 +92,9 @@ static double aside(struct vector axis, struct vector from, struct vector to)
     return hypot(hypot(to.x - from.x - u * axis.x, to.y - from.y - u * axis.y), to.z - from.z - u * axis.z);
 }
 
-/* m: the spacing of pings so near to a uniform straight track, along any axis, that gaps between them are what it has;
-   0 of others. No ping is farther off than a quarter of it along the track, or all of it across, and the receivers stay
-   where they are. */
+/* m: the spacing of pings so near to a uniform straight track, along any axis, that they have its gaps; 0 for others.
+   No ping is farther off than a quarter of it along the track, or all of it across, and the receivers stay where they
+   are. */
 static double spacing_sampled(const struct acquisition *a)
 {
     struct straight_track track;

@@ -10,9 +10,9 @@ enum {
     PLACES_MOST = 1000 /* of all patches, as far as three nodes along each axis allow */
 };
 
-/* Of the shortest an element, a pitch or a pixel is, and the widest a band: what lies beyond was typed in kHz. */
+/* Limits of the shortest element, pitch or pixel, and of the widest band: values beyond were typed in kHz. */
 static const double WAVELENGTH_MOST = 10, CARRIER_MOST = 2000;
-/* Wavelengths: sound of 100 kHz is absorbed by 500 dB each way, of 1 kHz by 100 dB. m/s: what is faster is no sound. */
+/* Wavelengths: sound of 100 kHz is absorbed by 500 dB each way, of 1 kHz by 100 dB. m/s: sound is slower. */
 static const double AWAY_MOST = 1e6, SOUND_MOST = 1e4;
 static const double SPACING_MOST = 0.01;  /* of the way from ping to ping */
 static const double CUT_PIXELS_MOST = 20; /* %: a swath may end with the records, or with the track */
@@ -21,7 +21,7 @@ static const double CUT_MOST = 0.05;      /* of a place's echoes, before it coun
 struct survey {
     double places, unmet; /* pixels, by the lattice */
     double unseen;        /* pixels outside of the beam of every ping, where it is known */
-    double cut;           /* pixels met of whose echoes from inside the beam the records hold not all */
+    double cut;           /* pixels met whose echoes from inside the beam are partly outside the records */
     int patches_unmet;
     struct steps {
         double worst; /* the step over the resolution at the place where that is largest */
@@ -82,7 +82,7 @@ static void steps_add(double step, int count, double least, double greatest, str
         *steps = (struct steps){step * (greatest - least), 1 / (greatest - least)};
 }
 
-/* One place: is it met, and what do the echoes of the pings that see it say? */
+/* One place: is it met, and how finely do the pings that see it resolve it? */
 static void place_survey(const struct acquisition *a, const struct grid *g, struct vector place, struct counts *counts,
                          struct survey *survey)
 {
@@ -173,16 +173,16 @@ static double longest_step(const struct problem *problem)
     return longest;
 }
 
-/* How far the ways that speed and pri tell lie off those between the pings: both are stated, but for stop-and-hop. */
+/* The difference of the ways by speed and pri from those between the pings: both are given, but for stop-and-hop. */
 struct motion {
-    double off;         /* of the whole track, over its length; 0 where nothing moves or no pri is known */
+    double off;         /* of the whole track, over its length; 0 where nothing moves or no pri is given */
     double told, found; /* m: the mean way from ping to ping */
 };
 
 static struct motion motion_of(const struct acquisition *a)
 {
     struct motion motion = {0, 0, 0};
-    struct vector way = {0, 0, 0}; /* by trapezoids: speeds made of differences of places tell it exactly */
+    struct vector way = {0, 0, 0}; /* by trapezoids: exact for speeds from differences of places */
     if (a->pings < 2 || !(a->pri > 0))
         return motion;
     for (int p = 0; p + 1 < a->pings; p++) {

@@ -7,7 +7,7 @@
 #include "contract/acquisition.h"
 
 /* c^2 - |velocity|^2 without a square root, which would lose the digits of c - |velocity| in rounding modes other than
-   the usual one: the greatest component v stands in (c - v)(c + v), where nothing cancels, and the others are
+   the usual one: the greatest component v goes into (c - v)(c + v), where nothing cancels, and the others are
    subtracted. */
 static inline double delay_margin(struct vector velocity, double c)
 {
@@ -18,7 +18,7 @@ static inline double delay_margin(struct vector velocity, double c)
 
 /* Seconds from the emission at `tx` over the point `p` to the receiver, which is at `rx` at emission and moves with
    `velocity` (|velocity| < c) until reception: solves c tau = |tx - p| + |rx + velocity tau - p| in closed form. The
-   root is always the positive one, (q + s)/e = n/(s - q) by whichever form adds, and e = c^2 - |velocity|^2 is
+   root is always the positive one, (q + s)/e = n/(s - q), by the form that adds. e = c^2 - |velocity|^2 is
    delay_margin, so that nothing cancels at any speed (6e-17 s). */
 static inline double delay_exact(struct vector tx, struct vector rx, struct vector velocity, struct vector p, double c)
 {

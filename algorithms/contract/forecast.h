@@ -1,5 +1,5 @@
-/* What the settings of an algorithm will make of an image, said before any plan: how far off it will be and why, and
-   what the sums will be made of. */
+/* A forecast for an algorithm's settings, before any plan: the errors of the image by cause, and the counts that decide
+   its time. */
 #ifndef SASBENCH_CONTRACT_FORECAST_H
 #define SASBENCH_CONTRACT_FORECAST_H
 
@@ -18,10 +18,10 @@ enum cause {
 };
 extern const char *const cause_names[CAUSES];
 
-/* How a pair's value is read: what its time depends on. */
+/* How a pair's value is read: its time depends on it. */
 enum reading_kind { READ_NEAREST, READ_LINE, READ_TAPS, READ_BRANCHES, READ_KINDS };
 
-/* What range migration takes its time for. */
+/* Parts of range migration's cost. */
 enum migration {
     MIGRATION_RECORDS, /* FLOPs of the records' transforms and delays */
     MIGRATION_SPREAD,  /* values that are transformed over the pings and put where wavenumbers read them */
@@ -34,22 +34,22 @@ enum migration {
 struct forecast {
     double error[CAUSES]; /* relative L2 of the complex image after one best complex gain, root mean square;
                              INFINITY: no law */
-    bool sums_pairs;      /* back projection: what follows is of its pairs, and of its records */
+    bool sums_pairs;      /* back projection: the fields below count its pairs and records */
     bool tables;          /* by the invariant engine */
     enum reading_kind kind;
     int values;        /* that a pair reads */
-    int finer;         /* how many values of a record stand for a sample */
-    double units;      /* that are made for them: entries of tables, or blocks of pixels */
-    double residues;   /* by tables: columns from ping to ping, of which neighbours share what they load */
+    int finer;         /* values of a record per sample */
+    double units;      /* made for the pairs: entries of tables, or blocks of pixels */
+    double residues;   /* by tables: columns from ping to ping whose neighbours share loads */
     double apart;      /* by the general engine: share of the pairs whose pixels share no loads, a sample apart */
     double pair_flops; /* of a pair */
     /* Of all records together: */
     double record_flops;  /* of the transforms of range compression */
-    double slowness;      /* of their length: times the seconds a FLOP of the lengths that FFTW is fast at */
-    double kernel_flops;  /* of branches that stand for a kernel's taps */
-    double record_values; /* complex ones that are put where pairs read them */
-    /* Where images of subapertures stand for pairs, what these take, and the pairs that are left, of which `units` are;
-       0 elsewhere. */
+    double slowness;      /* of their length: seconds a FLOP over those of lengths that FFTW is fast at */
+    double kernel_flops;  /* of branches in place of a kernel's taps */
+    double record_values; /* complex values stored for the pairs to read */
+    /* Where images of subapertures replace pairs: their cost, and the pairs that are left, which `units` belong to;
+       else 0. */
     double image_cost; /* in pairs */
     double image_flops;
     double image_pairs;
@@ -60,7 +60,7 @@ struct forecast {
 
 /* Of all causes: the root of the sum of squares. */
 double forecast_error(const struct forecast *forecast);
-/* The cause that is most of it. */
+/* The cause with the greatest error. */
 enum cause forecast_cause(const struct forecast *forecast);
 
 #endif

@@ -1,4 +1,4 @@
-/* Options structs by the tables of their params. */
+/* Access to options structs by the tables of their params. */
 #ifndef SASBENCH_CONTRACT_PARAM_H
 #define SASBENCH_CONTRACT_PARAM_H
 

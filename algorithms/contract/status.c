@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* The message of a thread; what workers said last, for the thread that waits for them. */
+/* The message of a thread; the workers' last message, for the thread that waits for them. */
 static _Thread_local char message[1024];
 static char of_workers[sizeof message];
 

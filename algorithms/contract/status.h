@@ -1,4 +1,4 @@
-/* How a function says that it failed: a status, and one message made where the fault was found. */
+/* How a function reports failure: a status, and one message made where the fault was found. */
 #ifndef SASBENCH_CONTRACT_STATUS_H
 #define SASBENCH_CONTRACT_STATUS_H
 
@@ -9,9 +9,9 @@ enum status {
     STATUS_UNSUPPORTED = 3 /* legal input that this algorithm cannot image: the message is the reason */
 };
 
-/* Store the message (printf style, one line without newline, at most 1023 bytes) and return `status`, so that a
-   callee can write `return status_set(STATUS_INVALID, "...")`. One message for each thread, overwritten by the next;
-   what a worker of a parallel region sets reaches the thread that waits for it (of several the one set last). */
+/* Store the message (printf style, one line without newline, at most 1023 bytes) and return `status`, so that a callee
+   can write `return status_set(STATUS_INVALID, "...")`. One message for each thread, overwritten by the next; a message
+   of a worker of a parallel region reaches the thread that waits for it (of several the last one). */
 enum status status_set(enum status status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The calling thread's last message, or that of its workers since; never NULL, valid until its next status_set. */

@@ -1,17 +1,16 @@
 /* Fast factorised back projection (Ulander, Hellsten, Stenstrom, IEEE TAES 39, 2003), of any track, bistatic, with
-   exact delays. Pings are divided into subapertures of some `base` records, whose images, of few directions, are summed
-   from the records on polar grids about their centres; `factor` of them are merged at a time into an image of more
-   directions, `stages` levels of images in all, and pixels are interpolated from the last.
+   exact delays. Pings are divided into subapertures of some `base` records. Their images, of a small number of
+   directions, are summed from the records on polar grids about their centres. `factor` images at a time are merged into
+   one of more directions, `stages` levels in all; pixels are interpolated from the last.
    backprojection/factorised/tree.h has the grids and their sampling.
 
    Cost: a pixel reads the images of the largest subapertures, one for base factor^(stages-1) records, in place of all
-   records: of n, n^(1/stages) or so for each stage. Images have about as many samples as the records.
+   records: with n records, some n^(1/stages) for each stage. Images have about as many samples as the records.
 
-   Error, relative L2: each time that an image is read, it is interpolated along range and across directions, each to
-   e = 0.85 error/sqrt(2 stages + 1), and the records as well: together `error` at most. Taps and
-   oversampling are chosen for e with the least work (factorised/taps.h), the records' polynomials as well. Whatever
-   cannot be read from an image is summed from the records (near pixels, ends of records, edges of the aperture
-   limit). */
+   Error, relative L2: each read of an image interpolates along range and across directions, each to e = 0.85
+   error/sqrt(2 stages + 1), as do reads of the records: together `error` at most. Taps and oversampling have error e
+   with the least work (factorised/taps.h), the records' polynomials as well. Pixels that cannot read an image sum the
+   records (near pixels, ends of records, edges of the aperture limit). */
 #include <math.h>
 #include <stdlib.h>
 
@@ -80,7 +79,7 @@ static enum status forecast_direct(const struct problem *problem, double error, 
     return status == STATUS_OK ? bp_forecast(problem, &branches, &direct_options, forecast) : status;
 }
 
-/* The number of levels that takes the least work; 0 where back projection itself does. */
+/* The number of levels with the least work; 0: back projection itself. */
 static enum status choose_stages(const struct problem *problem, struct tree_settings *settings,
                                  struct factorised_cost *chosen)
 {
@@ -107,7 +106,7 @@ static enum status choose_stages(const struct problem *problem, struct tree_sett
     return status;
 }
 
-/* What is planned; the cost is known where the number of levels is chosen, and not 0. */
+/* The settings planned; the cost is given if the number of levels was chosen and is not 0. */
 static enum status settings_make(const struct problem *problem, const struct options *options,
                                  struct tree_settings *settings, struct factorised_cost *cost)
 {

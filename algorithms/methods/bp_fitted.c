@@ -1,6 +1,6 @@
 /* Back projection with least-squares taps:  s(q) = sum of w_k s[floor(q) + k], k = -taps/2+1 .. taps/2, of the record
-   upsampled by `factor` through zero padding (exactly). The weights leave the least error over the acquisition's band
-   at each fraction of a sample (backprojection/fitted.h: R w = s with sinc functions of B/(factor fs)).
+   upsampled by `factor` through zero padding (exactly). The weights have the least error over the acquisition's band at
+   each fraction of a sample (backprojection/fitted.h: R w = s with sinc functions of B/(factor fs)).
 
    Cost: 4 taps + 8 FLOPs a pair; an inverse FFT of factor N a record. Error, relative L2 of a record of flat spectrum:
    9.2e-3, 1.3e-3, 2.0e-4 for 4, 6, 8 taps at fs = 2B, 0.094, 0.047, 0.024 at fs = 1.2 B; factor = 2 with 6 taps 1.7e-5

@@ -6,9 +6,9 @@
    grid's phase pi B/(2 fs (beta+1)) falls with beta, linear interpolation's own loss at high frequencies does not: a
    floor at beta about 4, about 0.07 (point) and 0.09 (speckle, median of ten draws) at fs = 2B, falling as (B/fs)^2.
 
-   preemphasis=on divides the spectrum by what linear interpolation takes off on average, sinc^2(f/fs), inside the
-   compression filter (one pair of FFTs a record where echoes are compressed already). It leaves 0.165 (B/fs)^2 of a
-   flat narrow band in place of 0.40 (B/fs)^2, with fs = 2B half as much as without. The papers do not have it. */
+   preemphasis=on divides the spectrum by the mean loss of linear interpolation, sinc^2(f/fs), inside the compression
+   filter (one pair of FFTs a record where echoes are compressed already). The error for a flat narrow band is 0.165
+   (B/fs)^2 in place of 0.40 (B/fs)^2; with fs = 2B half of that without. The papers do not have it. */
 #include "backprojection/bp.h"
 
 struct options {

@@ -3,8 +3,8 @@
 
    Cost: 4 taps + 8 FLOPs a pair. Error at fs = 2B, 8 taps: 2.4e-3 for a point, 0.04 for speckle (median of ten draws;
    the rectangular kernel's ripple); a Kaiser window (beta = 5) on the same taps is 40 to 50 times more accurate for a
-   point with a flat spectrum. kaiser_band takes beta = (pi/2) taps (1 - B/fs), which lets the kernel roll off between
-   the band's edge and its image: it leaves about exp(-beta)/4 of a flat band. */
+   point with a flat spectrum. kaiser_band sets beta = (pi/2) taps (1 - B/fs): the kernel rolls off between the band's
+   edge and its image, with an error of about exp(-beta)/4 for a flat band. */
 #include <math.h>
 
 #include "backprojection/bp.h"

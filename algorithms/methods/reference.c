@@ -1,7 +1,7 @@
-/* The exact image that all errors are measured against: the band-limited record evaluated at the exact delay. The
-   record is upsampled 4 times by zero padding (exact), then summed over 20 taps of a sinc under a Kaiser window. The
-   signal fills at most a quarter of the fine band, so the kernel may roll off over three quarters of it: with beta = 21
-   both its ripple and the images lie below 1e-10 of the signal. Slow on purpose: nothing here is traded for speed. */
+/* The exact image, the reference of all errors: the band-limited record evaluated at the exact delay. The record is
+   upsampled 4 times by zero padding (exact), then summed over 20 taps of a sinc under a Kaiser window. The signal fills
+   at most a quarter of the fine band, so the kernel may roll off over three quarters of it: with beta = 21 both its
+   ripple and the images lie below 1e-10 of the signal. Slow on purpose: nothing here is traded for speed. */
 #include "backprojection/bp.h"
 
 enum { UPSAMPLE = 4, TAPS = 20 };

@@ -3,7 +3,7 @@
 
        phi = -2 pi (F tau(u) + nu u),   F tau'(u) = -nu
 
-   Error: none of its own; what is left comes from the method of stationary phase and from the width of the blocks. */
+   Error: none of its own; only that of stationary phase and of the width of the blocks. */
 #include "range_migration/rma.h"
 
 static const struct rma_method method = {

@@ -1,18 +1,17 @@
-/* Range migration after phase-centre approximation (LBF21 Eq. (6)): each pair stands for a monostatic sonar
-   half-way between its transmitter at emission and its receiver at reception, corrected by the delay of the target
-   broadside:
+/* Range migration after phase-centre approximation (LBF21 Eq. (6)): each pair stands for a monostatic sonar half-way
+   between its transmitter at emission and its receiver at reception, corrected by the delay of the target at broadside:
 
        -phi = 2 pi nu (-d/2 - r v/c) + 4 pi r S/c + pi F (d + 2 v r/c)^2/(2 c r)
 
-   It takes the way of the sonar during propagation, 2 v r/c, as if every target were broadside. Error: grows with range
-   and with the beam, 0.14 rad at 300 m and 7 degrees to either side, 1 rad at twice that beam (LBF21 Figs 4, 5, 7
-   and 9). */
+   It uses the sonar's way during propagation, 2 v r/c, as if every target were at broadside. Error: grows with range
+   and with the beam, 0.14 rad at 300 m and 7 degrees to either side, 1 rad at twice that beam (LBF21 Figs 4, 5, 7 and
+   9). */
 #include "range_migration/rma.h"
 
 static const struct rma_method method = {
     .name = "rma_pca",
     .law = "pca_law",
-    .error_limit = 0.12, /* LBF21 Table IV studies it at 0.112 */
+    .error_limit = 0.12, /* LBF21 Table IV has 0.112 */
     .spectrum = spectrum_pca,
     .source = "LBF21 Eq. (21)",
     .range = {2, 2},

@@ -2,7 +2,7 @@
    is a working definition: the broadside delay of each receiver, exact and for each range, less that of the reference
    receiver M/2, corrected together with the PCA phase of the reference receiver (spectrum.h).
 
-   Error: that of PCA, as both take targets to be broadside; less only where d^4/r^3 counts. */
+   Error: that of PCA, as both assume targets at broadside; less only where d^4/r^3 counts. */
 #include "range_migration/rma.h"
 
 static const struct rma_method method = {

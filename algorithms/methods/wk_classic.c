@@ -1,8 +1,7 @@
-/* Omega-k in the track's axes, with squint handled as the classic way does: azimuth wavenumbers are laid out as far as
-   the beam's reach, and each cell (Kx, K_R) takes the alias nearest to the centroid K_R sin theta. What SQ18 improves
-   upon.
+/* Omega-k in the track's axes, with squint handled as the classic way does: azimuth wavenumbers extend as far as the
+   beam's, and each cell (Kx, K_R) takes the alias nearest to the centroid K_R sin theta. SQ18 improves upon this.
 
-   unfold says how far they are laid out, which changes the cost and not the image:
+   unfold sets their extent, which changes the cost and not the image:
        stuff      zeros between the pings, until the band about Kx = 0 holds all: 7 times the pings at 20 degrees
        baseband   the carrier's centroid taken off first, then zeros: twice
        support    only the wavenumbers in which the beam has cells: 1.4 times

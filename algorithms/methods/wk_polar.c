@@ -1,9 +1,9 @@
-/* Omega-k behind the polar-format spatial filter (PF05): echoes from outside the scene's target area are taken off
-   first (wavenumber/polar_filter.h). A scene without a target area is imaged unfiltered.
+/* Omega-k behind the polar-format spatial filter (PF05): echoes from outside the scene's target area are removed first
+   (wavenumber/polar_filter.h). A scene without a target area is imaged unfiltered.
 
-   Error: against all echoes' image, what the filter takes off and lets in. PF05's scene, by sub-apertures 1/2/4/8:
-   outside energy down by 7.5/10.6/19.6/19.5 dB, kept -1.5/-.35/-.15/-.11 dB; with curvature=on one sub-aperture gives
-   21 dB. */
+   Error against the image of all echoes: the energy that the filter removes inside and keeps outside. PF05's scene, by
+   sub-apertures 1/2/4/8: outside energy down by 7.5/10.6/19.6/19.5 dB, kept -1.5/-.35/-.15/-.11 dB; with curvature=on
+   one sub-aperture gives 21 dB. */
 #include "wavenumber/wk.h"
 
 static const char *const curvature_names[] = {"off", "on", NULL};

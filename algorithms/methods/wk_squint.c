@@ -1,11 +1,11 @@
-/* Omega-k in axes turned by the squint (SQ18): the Doppler centroid is taken off in (range wavenumber, azimuth), Eq.
-   (3), the axes are rotated, Eqs. (6) to (9), and the spectrum is interpolated along azimuth, Eq. (12), and then along
+/* Omega-k in axes turned by the squint (SQ18): the Doppler centroid is removed in (range wavenumber, azimuth), Eq. (3),
+   the axes are rotated, Eqs. (6) to (9), and the spectrum is interpolated along azimuth, Eq. (12), and then along
    range, Eq. (13). No zeros between the pings are needed; those after them (pad) are for the azimuth interpolation.
 
    Error: that of the method of stationary phase, and of the interpolations: 1e-4 with 8 taps and pad = 1.5 or more; 6
-   to 18 % near the record's ends with pad = 1. The weights that prepare the range interpolation belong to t + 2 X sin
-   theta/c, and the beam's half width psi moves what they meet by 2 X sin theta (1/cos psi - 1)/c: 3e-4 of the window in
-   SQ18's scene. */
+   to 18 % near the record's ends with pad = 1. The weights for the range interpolation are those at t + 2 X sin
+   theta/c, and the beam's half width psi moves echoes by 2 X sin theta (1/cos psi - 1)/c: 3e-4 of the window in SQ18's
+   scene. */
 #include "range_migration/rma.h"
 #include "wavenumber/wk.h"
 

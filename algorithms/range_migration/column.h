@@ -1,4 +1,4 @@
-/* What convert.c and focus.c share: one thread at one azimuth wavenumber (for each precision and instruction
+/* Shared by convert.c and focus.c: the work of one thread at one azimuth wavenumber (for each precision and instruction
    set; BP_ISA names it). */
 #ifndef SASBENCH_RANGE_MIGRATION_COLUMN_H
 #define SASBENCH_RANGE_MIGRATION_COLUMN_H
@@ -9,7 +9,7 @@
 
 enum {
     LANES = RMA_ALIGNMENT / sizeof(real), /* real parts and imaginary parts of a row take turns */
-    VECTOR = VECTOR_BYTES / sizeof(real)  /* of the instruction set: wider ones would live in memory */
+    VECTOR = VECTOR_BYTES / sizeof(real)  /* of the instruction set: the compiler keeps wider ones in memory */
 };
 typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
 typedef real vec_unaligned __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(real)), may_alias));
@@ -36,7 +36,7 @@ static inline void stage_end(struct workspace *w, enum rma_stage stage)
 }
 
 /* The receivers' spectra at this wavenumber, corrected for each block and added up (or not yet): `sums` holds
-   [needed][1 or receivers] rows. Bins that are evanescent hold anything. */
+   [needed][1 or receivers] rows. Evanescent bins have any values. */
 void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums);
 
 /* By delay compensation: monostatic echoes of wavenumbers p, p + period, ... that are used, in the order of turns, each

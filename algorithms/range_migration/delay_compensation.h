@@ -1,13 +1,13 @@
 /* Delay compensation: multi-receiver echoes become monostatic ones without range blocks.
 
-   What a receiver at offset d has beyond a monostatic sonar is, target broadside, a delay that depends on range alone.
-   It is undone exactly, in time: record x of receiver i becomes
+   At broadside, a receiver at offset d differs from a monostatic sonar by a delay that depends on range alone. The
+   delay is undone exactly, in time: record x of receiver i becomes
 
        y(tau) = x(tau + abeam_i(tau)) exp(j 2 pi fc abeam_i(tau))
 
-   by taps of least squares. After the FFT along azimuth, what is left is a phase that depends weakly on
-   wavenumber nu and range r = tau/slowness(nu): rho_i(nu, r), spectrum_residual. Its phasor is very nearly of rank two
-   over the receivers,  exp(j rho_i) = sum over q of V_qi U_q(nu, r),  so that
+   by taps of least squares. After the FFT along azimuth, the remaining phase depends weakly on wavenumber nu and range
+   r = tau/slowness(nu): rho_i(nu, r), spectrum_residual. Its phasor is very nearly of rank two over the receivers,
+   exp(j rho_i) = sum over q of V_qi U_q(nu, r),  so that
 
        z(nu, tau) = sum over q of U_q(nu, tau/slowness) sum over i of V_qi exp(-j pi nu d_i) y_i(nu, tau)
 
@@ -33,30 +33,30 @@ enum {
     DELAY_TAPS = 24, /* at most */
     DELAY_INTERVALS = 256
 };
-#define DELAY_NEAREST 0.5 /* of the nearest row: no delay is computed for less */
+#define DELAY_NEAREST 0.5 /* of the nearest row: the least range with a delay */
 
 /* V and U, in double. */
 struct delay_terms {
     int terms, receivers, angles, ranges;
     double angle_first, angle_step;     /* rad off broadside, of the monostatic spectrum at fc */
     double inverse_first, inverse_step; /* 1/m */
-    double *basis;                      /* [terms][receivers], orthonormal; a term that nothing needs is zero */
+    double *basis;                      /* [terms][receivers], orthonormal; an unneeded term is zero */
     double complex *coefficients;       /* [angles][terms][ranges]: U */
-    double left;                        /* relative L2 of the phasors within the beam that the terms leave */
+    double left;                        /* relative L2 error of the phasors within the beam by the terms */
     double bytes;
 };
 
-/* What `count` terms leave for the rows and the beam of a view; NAN without memory. */
+/* `left` of `count` terms for the rows and the beam of a view; NAN without memory. */
 double delay_terms_left(const struct rma_view *view, int count);
-/* They themselves. False without memory; delay_terms_free in any case. */
+/* The terms themselves. False without memory; call delay_terms_free in any case. */
 bool delay_terms_make(const struct rma_view *view, int count, struct delay_terms *terms);
 void delay_terms_free(struct delay_terms *terms);
-/* The first of four angles of the table about nu (cycles/m), and their weights: U is the sum of theirs. */
+/* The first of four angles of the table about nu (cycles/m), and their weights: U is their weighted sum. */
 int delay_terms_place(const struct delay_terms *terms, const struct spectrum_setting *setting, double nu,
                       double weights[4]);
 /* nu at an angle of the table. */
 double delay_terms_wavenumber(const struct delay_terms *terms, const struct spectrum_setting *setting, int angle);
-/* U_q there, at range r; held beyond the table. */
+/* U_q at an angle of the table and range r; constant beyond the table. */
 double complex delay_terms_value(const struct delay_terms *terms, int angle, int q, double r);
 
 /* Taps of least squares over the compressed pulse's energy spectrum, by the fraction of a sample: tap k weights sample
@@ -70,8 +70,8 @@ struct delay_taps {
 enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made);
 /* Their error, relative L2 of the pulse, half-way between two samples; NAN without memory. */
 double delay_taps_error(const struct acquisition *acquisition, int taps);
-/* Their error in an image, relative L2: that of its receivers' delays, which grows as sin(pi fraction), of the
-   frequencies up to `half` cycles a sample. NAN without memory. */
+/* Their error in an image, relative L2, for its receivers' delays and frequencies up to `half` cycles a sample; it
+   grows as sin(pi fraction). NAN without memory. */
 double delay_taps_expected(const struct rma_view *view, int taps, double half);
 /* Weights for the signal `fraction` samples (0 to 1) after tap taps/2 - 1, and their slopes over it. */
 void delay_taps_weights(const struct delay_taps *taps, double fraction, double *weights, double *slopes);

@@ -2,8 +2,8 @@
    by one monostatic range migration (LBF21 section IV).
 
    A method is a formula phi(d, r, F, nu) for the phase of one pair's two-dimensional spectrum (spectrum.h). Each
-   receiver's spectrum is multiplied by exp(-j (phi + r K)) at the centre r of a range block, with r K the exact
-   phase of d = 0: what is left looks like the echo of a monostatic sonar and is focused exactly by
+   receiver's spectrum is multiplied by exp(-j (phi + r K)) at the centre r of a range block, with r K the exact phase
+   of d = 0. The product is like the echo of a monostatic sonar, and is focused exactly by
 
        image(x, r) = sum over nu and F of  Z(F, nu) exp(+j (r K(F, nu) + 2 pi nu x)) w(F, nu, r),
        w = exp(j pi/4) F/(1 - v^2/c^2) sqrt(c r/(2 kappa^3)) / (spacing P N_f),    kappa = c K/4 pi,
@@ -27,7 +27,7 @@
 #include "contract/algorithm.h"
 #include "range_migration/spectrum.h"
 
-/* Settings of all methods; those that a method does not have are 0. */
+/* Settings of all methods; 0 where a method does not have one. */
 struct rma_options {
     int blocks;                             /* range blocks over all rows asked for; 0: by Eq. (13) and limit */
     double limit;                           /* rad: the phase error that Eq. (13) accepts */
@@ -56,21 +56,21 @@ struct rma_method {
     double range[2], azimuth[2], products[2], interpolations;
 };
 
-/* How wide the engine focuses; what lies farther out does not exist, or is left out. */
+/* The widths that the engine focuses; echoes from farther out do not exist, or are left out. */
 struct rma_bounds {
     double sine;  /* of the widest angle off broadside that wavenumbers, beam and lowest frequency allow */
     double way;   /* m: the farthest that a ping is from a wanted column, along the track; INFINITY: no bound */
     double aside; /* m: greatest magnitude of an offset */
 };
 
-/* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and
-   some Fresnel zones beyond it. */
+/* The greatest distance along the track between a target at range r and the transmitter, m: by angle, or by the track's
+   own extent and some Fresnel zones beyond it. */
 double rma_reach(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
-/* How far the middle of a pair can be from a target at range r, m: what wavenumbers beyond hold is left out. */
+/* The greatest distance between a target at range r and the middle of a pair, m: wavenumbers beyond are left out. */
 double rma_focused(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
-/* What images by azimuth transforms keep to, range migration's and omega-k's: the conditions are to see to it. */
+/* Limits of images by azimuth transforms (range migration, omega-k), for the conditions to check. */
 double rma_promise(const void *options);
 
 /* The callbacks of struct algorithm, whose `method` is a struct rma_method, and whose options are a struct rma_options.

@@ -1,4 +1,4 @@
-/* What a scene must fulfil for range migration to image it rightly (condition.h). */
+/* Conditions for range migration to image a scene correctly (condition.h). */
 #ifndef SASBENCH_RANGE_MIGRATION_RMA_CONDITIONS_H
 #define SASBENCH_RANGE_MIGRATION_RMA_CONDITIONS_H
 
@@ -7,16 +7,16 @@
 #include "contract/condition.h"
 #include "range_migration/rma.h"
 
-/* What the conditions look at: a uniform straight track along x, and the rows and columns wanted. */
+/* Input of the conditions: a uniform straight track along x, and the rows and columns wanted. */
 struct rma_view {
     const struct problem *problem;
     const struct rma_method *method;
     struct spectrum_setting setting;
     double x_low, x_high, spacing; /* m: the track's ends; ping to ping, > 0 */
-    bool converts;                 /* not a single receiver at the transmitter, which needs no formula */
+    bool converts;                 /* needs a formula: not a single receiver at the transmitter */
     struct rma_bounds bounds;
-    double beam_sine; /* of the echoes' beam at the transmitter; INFINITY: everything is seen */
-    /* Omega-k alone, which keeps all wavenumbers that the pings hold: */
+    double beam_sine; /* of the echoes' beam at the transmitter; INFINITY: no limit */
+    /* Omega-k alone, which keeps all wavenumbers of the pings: */
     double slope;  /* the middle of them, Kx over K_R */
     double period; /* pings and zeros; 0: range migration */
 };
@@ -35,8 +35,8 @@ double rma_widest_sine(const struct acquisition *acquisition);
    False where there are none. */
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high);
 
-/* Append to list what every image by azimuth transforms takes for granted (above_dc, uniform_track, pings,
-   whole_aperture, in_front), and fill *track. False where one of them does not hold. */
+/* Append to list the requirements of every image by azimuth transforms (above_dc, uniform_track, pings, whole_aperture,
+   in_front), and fill *track. False where one of them is not met. */
 bool azimuth_requirements(const struct problem *problem, struct condition *list, int *count,
                           struct straight_track *track);
 
@@ -49,23 +49,22 @@ double prediction_error(const struct rma_view *view);
 /* ---- ghosts.c: grating lobes, where back projection and azimuth transforms differ by principle ---- */
 
 /* The condition grating_lobes of a uniform straight track (acquisition_is_straight) and patches at r > 0, turned or
-   not. Back projection also sums, at a pixel, pings from which the pixel has a wavenumber that the pings do not sample;
-   what such a ping saw elsewhere at the same delay is a ghost in back projection's image, and not in that of a
-   transform. With an aperture limit it may be the other way round. The value is the ghosts of point targets in the
-   patches over the targets' own images (relative L2), the worst of the patches. It refuses where a patch holds ghosts
-   of the other patches' targets, and with an aperture limit. Where a patch without one is so wide that targets at its
-   ends make ghosts within it, it warns: whether there are such targets is not known (omega-k refuses there too, as it
-   predicts no error). */
+   not. At a pixel, back projection also sums pings from which its wavenumber is not sampled. Echoes of such a ping from
+   elsewhere at the same delay are a ghost in back projection's image, not in that of a transform. With an aperture
+   limit it may be the other way round. The value is the ghosts of point targets in the patches over the targets' own
+   images (relative L2), the worst of the patches. It refuses where a patch holds ghosts of the other patches' targets,
+   and with an aperture limit. Without a limit, it warns where a patch is so wide that targets at its ends make ghosts
+   within it: whether there are such targets is unknown (omega-k refuses there too, as it predicts no error). */
 struct condition ghosts_condition(const struct problem *problem, const struct straight_track *track);
 
 /* ---- rma_conditions.c ---- */
 
 /* rma_conditions: conditions_general among them. What may cause a large error (doppler, the formula's law) refuses only
-   where the predicted error is too large, and then stands for it; without such a cause predicted_error itself refuses.
-   spa_amplitude always refuses: the prediction takes the beam of a pair for that of its transmitter. Its value is NAN
-   without memory. */
+   where the predicted error is too large, and then in its place; without such a cause predicted_error itself refuses.
+   spa_amplitude always refuses: the prediction assumes the transmitter's beam for each pair. Its value is NAN without
+   memory. */
 
-/* The last of them, which refuses beyond the method's error_limit. */
+/* The last condition, which refuses beyond the method's error_limit. */
 struct condition rma_predicted_error(const struct rma_view *view);
 
 /* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED where a value is NAN without memory. */
@@ -74,8 +73,8 @@ enum status rma_conditions_check(const char *method, const struct condition *lis
 /* STATUS_UNSUPPORTED where track, axes or rows alone refuse; far cheaper than rma_conditions. */
 enum status rma_requirements_check(const struct problem *problem, const char *method);
 
-/* What an image loses at the ends of the band, energy, relative: beyond what it keeps or up to `edge` (cycles a sample)
-   inside of that, or at half the sampling rate. Errors: STATUS_FAILED without memory. */
+/* Relative energy that an image loses at the ends of the band: beyond the band that it keeps, up to `edge` (cycles a
+   sample) inside of it, or at half the sampling rate. Errors: STATUS_FAILED without memory. */
 enum status rma_band_lost(const struct rma_view *view, double edge, double *lost);
 /* rma_forecast's errors: as rma_conditions_check. rma_cost's: STATUS_UNSUPPORTED as rma_requirements_check, and where
    transforms, work or memory are too large; STATUS_FAILED without memory. */

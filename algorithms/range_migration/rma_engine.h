@@ -1,8 +1,7 @@
-/* A range migration's plan. rma_layout.c lays it out (track, swaths and their transforms), rma_blocks.c
-   the blocks of the conversion, rma_phase.c knows the
-   corrections' phases, rma_transform.c transforms along range and azimuth (for each precision), convert.c and focus.c
-   work on one azimuth wavenumber (for each precision and instruction set), rma.c puts them in order. Pointers without
-   a type hold values of the plan's precision.
+/* A range migration's plan. rma_layout.c lays it out (track, swaths and their transforms), rma_blocks.c the blocks of
+   the conversion, rma_phase.c has the corrections' phases, rma_transform.c transforms along range and azimuth (for each
+   precision), convert.c and focus.c work on one azimuth wavenumber (for each precision and instruction set), rma.c puts
+   them in order. Pointers without a type hold values of the plan's precision.
 
    THE STAGES, with the shape of the array before and after each (rma.h has the equations). All values are complex,
    the last dimension is contiguous. M receivers; P = period, the pings and zeros after them; Q = M P wavenumbers;
@@ -82,7 +81,7 @@ enum rma_buffer {
     RMA_CONVERTED,   /* [receivers][RMA_SPAN]: some bins after the bulk correction */
     RMA_SUMS,        /* [needed][1 or receivers][row]: spectra of each block */
     RMA_WAVE,        /* complex [longest transform of a swath] */
-    RMA_TRANSFORMED, /* complex [longest transform]: what becomes of the one in RMA_WAVE */
+    RMA_TRANSFORMED, /* complex [longest transform]: the transform of RMA_WAVE */
     RMA_CUT,         /* complex [stolt_length]: the blocks put together, from sample `centre` on; delay
                         compensation's [rma_turns][row]: samples */
     RMA_PLACES,      /* real [length]: position of those samples in blocks */
@@ -112,7 +111,7 @@ struct rma_member {
     void *cut;         /* complex [row] */
 };
 
-/* One wavenumber: what of its band exists, and how far ranges are delayed. */
+/* One wavenumber: the bins of its band that exist, and the delay of ranges. */
 struct rma_line {
     double nu;           /* cycles/m */
     double lowest;       /* Hz: the least F that is used; below it lies the evanescent part */
@@ -140,7 +139,7 @@ struct rma_patch {
     void *focus_plan, *azimuth_forward, *azimuth_inverse; /* forward: chirp only */
 };
 
-/* Delay compensation of a swath: which samples of a record make up each of its own, by receiver and run of RMA_RUN. */
+/* Delay compensation of a swath: the record's samples for each of its own, by receiver and run of RMA_RUN. */
 struct rma_map {
     int runs;
     int *first; /* [receivers][runs]: the first tap's, for the run's first sample; INT_MIN: outside the record */
@@ -174,7 +173,7 @@ struct rma_swath {
     int held;                  /* delay compensation: samples of a row, from `begin` on */
 
     int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
-    int reference;       /* index into them: the bulk correction is this block's */
+    int reference;       /* index into `blocks`: the bulk correction is this block's */
 
     void *data; /* [period][receivers][row]: spectra, vectors of re and im in turn */
     struct rma_map map;
@@ -209,7 +208,7 @@ struct rma {
     double nearest, farthest; /* m: all rows asked for */
     struct rma_bounds bounds;
     int groups;    /* of receivers */
-    bool recurs;   /* by recurrence: receivers are evenly spaced, and libm is not asked for */
+    bool recurs;   /* by recurrence: receivers are evenly spaced, and phases=libm is not set */
     bool converts; /* false: one receiver, at the transmitter */
 
     /* pulse compression */
@@ -250,8 +249,8 @@ struct rma {
 
 /* ---- rma_layout.c ---- */
 
-/* Fills everything but the tables of delay compensation and the pointers that rma_transform's plan fills. What
-   rma_requirements_check asks for must hold. */
+/* Fills everything but the tables of delay compensation and the pointers that rma_transform's plan fills. The
+   requirements of rma_requirements_check must be met. */
 enum status rma_layout(struct rma *rma);
 /* Those tables. */
 enum status rma_delay_tables(struct rma *rma);
@@ -274,9 +273,9 @@ enum status rma_count(const struct problem *problem, const struct rma_method *me
 
 /* ---- rma_blocks.c ---- */
 
-/* As many as the options say, or as keep the error at their ends below the limit. */
+/* The blocks: as many as in the options, or as keep the error at their ends below the limit. */
 enum status rma_blocks_lay(struct rma *rma);
-/* Those that make up a swath's rows, into `list`. */
+/* The blocks of a swath's rows, into `list`. */
 void rma_blocks_choose(const struct rma *rma, struct rma_swath *swath, int *list);
 
 /* Blocks that blend at one range. */
@@ -298,7 +297,7 @@ static inline double rma_shift(const struct rma_swath *swath, const struct rma_p
     return cycles - floor(cycles + 0.5);
 }
 
-/* How many turns a thread takes at once: delay compensation those that read the same spectra. */
+/* The turns that a thread takes at once: with delay compensation, those that read the same spectra. */
 static inline int rma_turns(const struct rma *rma)
 {
     return rma->delay ? (4 * RMA_TILE + rma->receivers - 1) / rma->receivers * rma->receivers : RMA_TILE;
@@ -310,14 +309,14 @@ double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int b
 /* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu);
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q);
-/* Fit the correction at `r` less the one at `less` (0: nothing is taken off) for all groups. */
+/* Fit the correction at `r` minus the one at `less` (0: none is subtracted) for all groups. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 
 /* ---- delay_fold.c ---- */
 
-/* The fold that costs least of those that the receivers' places allow. */
+/* The cheapest fold that the receivers' places allow. */
 void rma_fold(struct rma *rma);
 /* FLOPs of a sample, of all wavenumbers that read the same spectra. */
 double rma_fold_flops(const struct rma *rma);
@@ -347,8 +346,7 @@ extern const struct rma_transform rma_transform_float, rma_transform_double;
 
 /* ---- focus.c ---- */
 enum rma_stage { RMA_RECEIVERS, RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
-/* The wavenumbers whose turn it is from `turn` on, rma_turns of them, all rows, into `focused`; seconds of each stage
-   are added. */
+/* The rma_turns wavenumbers from `turn` on, all rows, into `focused`; adds the seconds of each stage. */
 typedef void rma_column_function(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                  double seconds[RMA_STAGES]);
 ISA_DECLARE(rma_column_function, rma_column);

@@ -1,13 +1,13 @@
 /* The phase of one pair's two-dimensional echo spectrum: range frequency by azimuth wavenumber (LBF21 section III).
 
    Units: offset d of the receiver ahead of the transmitter (m), the target's range r (m, > 0), F = fc + f_tau the
-   absolute frequency (Hz, > 0), azimuth wavenumber nu in cycles a metre of track. The papers' Doppler frequency is
-   f = v nu; in nu nothing divides by the speed, so that a platform that stops and hops (v = 0) is no case of its own.
-   Result: radians, of a unit target at azimuth 0; a target at x adds -2 pi nu x.
+   absolute frequency (Hz, > 0), azimuth wavenumber nu in cycles a metre of track. The papers' Doppler frequency is f =
+   v nu; in nu nothing divides by the speed, so that a platform that stops and hops (v = 0) is no special case. Result:
+   radians, of a unit target at azimuth 0; a target at x adds -2 pi nu x.
 
        sin theta = c nu/(2F),   S = sqrt(F^2 - (c nu/2)^2) = F cos theta,   Delta = d + 2 r v/(c cos theta)
 
-   Cells with S^2 <= 0 are evanescent and give NAN (the exact spectra know their own bounds, below), without raising
+   Cells with S^2 <= 0 are evanescent and give NAN (the exact spectra have their own bounds, below), without raising
    FE_INVALID. */
 #ifndef SASBENCH_RANGE_MIGRATION_SPECTRUM_H
 #define SASBENCH_RANGE_MIGRATION_SPECTRUM_H
@@ -25,8 +25,8 @@ typedef double spectrum_function(const struct spectrum_setting *setting, double 
    sound and any r > 0. Its spectrum lies where  -1/(1 - v/c) < sin theta < 1/(1 + v/c);  NAN elsewhere, and for r <=
    0. */
 spectrum_function spectrum_exact;
-/* Loffeld's formula, -(psi + psi_i/2), LBF21 Eqs. (3) to (5). `printed` takes theta at fc, as the paper does, which
-   is the whole error that it reports for its first receiver; `corrected` takes it at F. */
+/* Loffeld's formula, -(psi + psi_i/2), LBF21 Eqs. (3) to (5). `printed` takes theta at fc, as the paper does: the whole
+   error that it reports for its first receiver. `corrected` takes theta at F. */
 spectrum_function spectrum_lbf_printed, spectrum_lbf_corrected;
 /* LBF21 Eq. (7): Eq. (5) with S^3/F^2 replaced by F, theta at fc. What its Figs 3 and 8 show. */
 spectrum_function spectrum_lbf7;
@@ -37,13 +37,13 @@ spectrum_function spectrum_pca;
 spectrum_function spectrum_wu;
 
 /* Delay compensation (delay_compensation.h): of the exact spectrum, -phi = r K - pi nu d + 2 pi F beta(nu/F, r), it
-   takes beta where the target stands broadside, at the range where its echo arrives, and the rest at the carrier:
+   takes beta at broadside, at the range where the target's echo arrives, and the rest at the carrier:
 
        -phi = r K - pi nu d + 2 pi F abeam(d, r walk(nu)) + residual(d, r, nu). */
 spectrum_function spectrum_compensated;
-/* beta at nu = 0: by how much the echo of a receiver at offset d is later (s) than that of d = 0, r > 0. */
+/* beta at nu = 0: delay (s) of the echo of a receiver at offset d after that of d = 0, r > 0. */
 double spectrum_abeam(const struct spectrum_setting *setting, double d, double r);
-/* dK/dF at fc, relative to nu = 0: what the walk multiplies ranges by. NAN where evanescent. */
+/* dK/dF at fc, relative to nu = 0: the factor of ranges by the walk. NAN where evanescent. */
 double spectrum_walk(const struct spectrum_setting *setting, double nu);
 /* Radians at fc. */
 double spectrum_residual(const struct spectrum_setting *setting, double d, double r, double nu);

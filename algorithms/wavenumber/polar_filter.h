@@ -1,4 +1,4 @@
-/* The polar-format spatial filter (PF05): range-compressed echoes of a monostatic sonar, without what lies outside a
+/* The polar-format spatial filter (PF05): range-compressed echoes of a monostatic sonar, without those from outside a
    target area. A coarse polar-format image of each sub-aperture is masked, and turned back into echoes:
 
        e_p(x', F) = e(x', F) exp(+j 2 pi F tau_c(x'))      the delay of the area's centre taken off (PF05 Eq. (6))
@@ -9,11 +9,11 @@
 
    PF05 prints Eqs. (7), (11) and (15) with errors: everything of (7) stands in the exponent, alpha is atan((X_c -
    x_s)/R_c), and psi is counted from broadside. The plane wave misplaces a target: its azimuth is stretched by R/R_c
-   about x_s. With curvature=on the quadratic term is taken off for each range, exp(+j k_c u^2 (1/R - 1/rho)) in (u, t),
+   about x_s. With curvature=on the quadratic term is removed for each range, exp(+j k_c u^2 (1/R - 1/rho)) in (u, t),
    and put back after the mask: one sub-aperture then does what the paper needs four for.
 
-   Taking off the centre's delay widens the azimuth band; echoes are upsampled along the track (1, 2, 4, ... times) as
-   far as that asks for: k spans 2 k_c (beam + the centre's own sines over a sub-aperture). */
+   Removing the centre's delay widens the azimuth band. So echoes are upsampled along the track (1, 2, 4, ... times): k
+   spans 2 k_c (beam + the centre's own sines over a sub-aperture). */
 #ifndef SASBENCH_WAVENUMBER_POLAR_FILTER_H
 #define SASBENCH_WAVENUMBER_POLAR_FILTER_H
 
@@ -35,13 +35,13 @@ struct polar_shape {
    target area at r > 0 that lies in the records. Errors: STATUS_UNSUPPORTED; `place` begins the message. */
 enum status polar_filter_check(const struct acquisition *acquisition, const char *place);
 
-/* Of echoes that the check holds: the most sub-apertures they have; how many there are where `asked` is 0, else
-   `asked`; the first ping of the s-th of `count`; and the factor of upsampling, 1, 2, 4, ..., that `count` ask for. */
+/* For echoes that pass the check: the greatest number of sub-apertures; the number chosen where `asked` is 0, else
+   `asked`; the first ping of the s-th of `count`; and the factor of upsampling, 1, 2, 4, ..., of `count`. */
 int polar_filter_most(const struct acquisition *acquisition);
 int polar_filter_subapertures(const struct acquisition *acquisition, int asked);
 int polar_filter_begin(const struct acquisition *acquisition, int count, int s);
 double polar_filter_upsampling(const struct acquisition *acquisition, int count);
-/* Sine of the angle off broadside under which the area's centre is seen from x (m). */
+/* Sine of the angle off broadside of the area's centre, seen from x (m). */
 double polar_filter_sine(const struct acquisition *acquisition, double x);
 
 /* "area_kept", a warning where a target inside the area loses more than half of its energy: predicted dB, the worst of

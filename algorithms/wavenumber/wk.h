@@ -15,7 +15,7 @@
                   range. wk_squint.
 
    SQ18 prints exp(+j K_R R) in Eq. (2), with which Eq. (3) would double the centroid; the phase is -K_R R.
-   Both are exact for a platform that moves on while the pulse travels: at the speed v, b = v^2/c^2, it is
+   Both are exact for a platform that moves while the pulse travels: at the speed v, b = v^2/c^2, it is
        F = v Kx/(4 pi) + sqrt((c Kx/(4 pi))^2 + (1 - b) (c Ky/(4 pi))^2)
    (spectrum_monostatic solved for F), in whatever axes. Scale and phase are those of back projection: each cell has the
    weight of range_migration/rma.h. Stages:
@@ -61,11 +61,11 @@ struct wk_method {
 #define WK_CALLBACKS                                                                                                   \
     .conditions = wk_conditions, .plan = wk_plan, .execute = wk_execute, .work = wk_work, .destroy = wk_destroy
 enum status wk_plan(const struct problem *problem, const void *method, const void *options, void **plan);
-/* Of one that rotates, for a slower platform; of one that filters, with what that takes off its own targets. */
+/* A method that rotates needs a slower platform; one that filters has a condition on the loss of its own targets. */
 int wk_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                   int room);
-/* Errors alone: INFINITY of a filter, and of an azimuth transform that is padded less than 1.25 times where axes are
-   turned. Errors: as wk_plan. */
+/* Errors alone: INFINITY with a filter, and with turned axes if the azimuth transform is padded less than 1.25 times.
+   Errors: as wk_plan. */
 enum status wk_forecast(const struct problem *problem, const void *method, const void *options,
                         struct forecast *forecast);
 /* The counts alone. */
@@ -74,7 +74,7 @@ enum status wk_execute(void *plan, const struct echoes *echoes, struct image *im
 struct work wk_work(const void *plan);
 void wk_destroy(void *plan);
 
-/* Azimuth samples carried, over those recorded: what SQ18 calls zeros. Unfolded: wavenumbers over the pings' own band;
+/* Azimuth samples of the transform, over those recorded: SQ18's zeros. Unfolded: wavenumbers over the pings' own band;
    rotated: the padding. */
 double wk_size_factor(const void *plan);
 

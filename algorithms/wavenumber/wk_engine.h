@@ -56,7 +56,7 @@ static inline int wk_kernel_width(int taps)
 
 struct wk_patch {
     struct grid grid; /* as wanted */
-    struct grid own;  /* what is focused, in the plan's own axes: the same pixels, or a finer grid to resample */
+    struct grid own;  /* focused, in the plan's own axes: the same pixels, or a finer grid to resample */
     bool resampled;
     double kx_carrier; /* rad/m: taken off before resampling, else 0 */
     long long bin_carrier;
@@ -75,12 +75,12 @@ enum wk_stage { WK_ROTATE, WK_STOLT, WK_FOCUS, WK_STAGES };
 struct wk;
 
 /* ---- the loops of each instruction set ---- */
-/* wk_record.c: the spectrum of ping n's record, weighted, the centroid taken off, into its row of `data`. `wave`:
-   [range_length], as FFTW was told. */
+/* wk_record.c: the spectrum of ping n's record, weighted, the centroid removed, into its row of `data`. `wave`:
+   [range_length], aligned as for FFTW's plan. */
 typedef void wk_record_function(const struct wk *wk, int n, const void *record, void *wave);
 /* wk_line.c: lines from `first` to first + WK_TILE - 1, all rows, into `focused`; seconds of each stage are added. */
 typedef void wk_line_function(const struct wk *wk, int thread, int first, double seconds[WK_STAGES]);
-/* wk_row.c: row i of a patch, from `focused` onto its columns. `wave`: [columns], as FFTW was told. */
+/* wk_row.c: row i of a patch, from `focused` onto its columns. `wave`: [columns], aligned as for FFTW's plan. */
 typedef void wk_row_function(const struct wk *wk, const struct wk_patch *patch, int i, void *wave, void *pixels);
 ISA_DECLARE(wk_record_function, wk_record);
 ISA_DECLARE(wk_line_function, wk_line);
@@ -103,7 +103,7 @@ struct wk {
     /* range: bin k of the band is at fc + (band_first + k) fs/range_length; the sample `centre` is the origin */
     int range_length, centre;
     int band_first, band, row; /* row: bins of a stored row */
-    double oversampling;       /* of the records, with what centroids add, by the range transform */
+    double oversampling;       /* of the records, with the shift by centroids, by the range transform */
     double record_pad;         /* samples by which turned axes shift a record to either side */
     double drift;              /* of it: half the way over X, positive where echoes come earlier */
 
@@ -153,24 +153,24 @@ static inline double wk_ky(const struct wk *wk, double frequency, double kx0)
 }
 
 /* ---- wk_conditions.c ---- */
-/* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of
-   what the pings hold, so that a beam broadside needs no unfolding. */
+/* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c. This is ignored where it is a small
+   part of the pings' band, so that a beam at broadside needs no unfolding. */
 double wk_centroid_slope(const struct acquisition *acquisition, const struct straight_track *track);
 
 /* A lone receiver at the transmitter, in range migration's terms. */
 struct rma_view wk_view_of(const struct problem *problem, const struct straight_track *track);
-/* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED without memory; the requirements are those that cost little. */
+/* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED without memory; the requirements are the cheap conditions. */
 enum status wk_conditions_check(const struct problem *problem, const struct wk_method *method);
 enum status wk_requirements_check(const struct problem *problem, const struct wk_method *method);
 
 /* ---- wk_layout.c ---- */
 enum status wk_layout(struct wk *wk);
-/* Pings and zeros from ping to ping, that hold all pixels and echoes in the track's own axes, before they are made a
-   length of a transform. Errors: STATUS_FAILED without memory. */
+/* Pings and zeros that cover all pixels and echoes in the track's own axes, before rounding up to a transform's length.
+   Errors: STATUS_FAILED without memory. */
 enum status wk_period(const struct wk *wk, double *period);
 
 /* ---- wk.c ---- */
-/* A plan that is laid out and no more, to be freed by wk_destroy; *wk is NULL without one. The conditions hold. */
+/* A plan with its layout only, freed by wk_destroy; *wk is NULL on error. The conditions must be met. */
 enum status wk_lay_out(const struct problem *problem, const void *method, const void *options, struct wk **made);
 /* Ky bins that are interpolated for a patch, of all lines. */
 double wk_stolt_cells(const struct wk *wk, const struct wk_patch *patch);

@@ -1,5 +1,5 @@
-/* Factorised back projection: subapertures from the smallest up, the parts of one at a time in memory; each line of
-   places or pixels is made by one thread, parts in order, so that the bits do not depend on the number of threads. */
+/* Factorised back projection: subapertures from the smallest up, with the parts of one at a time in memory. One thread
+   makes each line of places or pixels, parts in order, so that the bits do not depend on the number of threads. */
 #include <math.h>
 #include <omp.h>
 #include <string.h>
@@ -114,7 +114,7 @@ static void line_from_records(const struct factorised *plan, int subaperture, in
     polar_line_end(plan, subaperture, view, &to);
 }
 
-/* Pixels or places on a line, and how it runs through a subaperture's image. */
+/* Pixels or places on a line, and its course through a subaperture's image. */
 struct crossed {
     const struct pixel_line *line;
     struct vector centre; /* of the subaperture, in the line's axes */
@@ -183,7 +183,7 @@ static void line_from_parts(const struct factorised *plan, int subaperture, int 
     polar_line_end(plan, subaperture, view, &to);
 }
 
-/* Pixels of one line of a patch: from the subaperture's images, and from its records what no image can give. */
+/* Pixels of one line of a patch: from the subaperture's images, and the rest from its records. */
 static void line_of_pixels(const struct factorised *plan, int subaperture, int patch, int number)
 {
     const struct tree *tree = &plan->tree;
@@ -232,7 +232,7 @@ static void compress(const struct forming *forming, const struct subaperture *pa
     stages_end(forming->stages, "compress");
 }
 
-/* A subaperture's images, and what pixels read from them. */
+/* Make a subaperture's images, and add them to the pixels. */
 static void subaperture_form(const struct forming *forming, int subaperture)
 {
     const struct factorised *plan = forming->plan;

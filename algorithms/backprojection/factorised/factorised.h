@@ -13,12 +13,12 @@ struct factorised_scratch {
     struct vector *rx;            /* [base][receivers] */
     struct ping_box *boxes;       /* [base] */
     void *trace, *row;            /* trace.h */
-    long long outside;            /* of an execution: what would be read outside of images, and is zero */
+    long long outside;            /* of an execution: reads outside of images, which give zero */
 };
 
 struct factorised {
     struct tree tree;
-    struct bp bp; /* the problem, its records and how they are read; no engine */
+    struct bp bp; /* problem, records and their reading; no engine */
     bp_sum_function *sum;
     polar_trace_function *trace;
     struct bp_layout layout, polar_layout; /* of records, of traces */
@@ -30,41 +30,41 @@ struct factorised {
     void *rows;                /* real [base receivers][layout.record]; one value more may be read */
     void *images[STAGES_MOST]; /* real [slots][slot] of a level: the parts of one subaperture, or one image */
     size_t slot[STAGES_MOST];
-    void **phasors; /* [stages][views] real [cosines, sines][count]: exp(-j 4 pi fc rho/c) */
-    void **sums;    /* [patch_count]: re then im, real [lines][pixels of a line] */
-    bool *needed;   /* [subapertures][patch_count]: are pixels read from it, or summed from its records? */
+    void **phasors;                     /* [stages][views] real [cosines, sines][count]: exp(-j 4 pi fc rho/c) */
+    void **sums;                        /* [patch_count]: re then im, real [lines][pixels of a line] */
+    bool *needed;                       /* [subapertures][patch_count]: do pixels read its image or sum its records? */
     struct factorised_scratch *scratch; /* [threads] */
     int threads;
-    double flops;  /* but for pixels summed from records */
-    double direct; /* pixels times records that are summed so, if all of them count */
+    double flops;  /* without pixels summed from records */
+    double direct; /* pixels times records of these, if all pairs count */
 };
 
-/* What some settings take beside the transforms of the records, counted on some of the lines of pixels. */
+/* The cost of settings without the records' transforms, counted on some of the lines of pixels. */
 struct factorised_cost {
     double records; /* pairs of a record and a pixel or a place of an image */
-    double blocks;  /* lines that they are summed for, one a record */
+    double blocks;  /* lines of these sums, one a record */
     double images;  /* all else, in pairs of the general engine */
     double flops;   /* of all but the pairs */
     int degree;     /* of the records' polynomials */
 };
 
-/* All of it in pairs of the general engine: by this the number of levels is chosen. */
+/* The sum, in pairs of the general engine. It decides the number of levels. */
 double factorised_pairs(const struct factorised_cost *cost);
 
-/* What some settings cost, and, in pairs, what back projection itself does, of which the forecast is given: to be
-   compared.
-   Errors: as tree_make; STATUS_UNSUPPORTED where patches are turned by different angles. */
+/* The cost of settings, and for comparison, in pairs, that of back projection with the given forecast. Errors: as
+   tree_make; STATUS_UNSUPPORTED where patches are turned by different angles. */
 enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings,
                             struct factorised_cost *cost);
 enum status factorised_cost_direct(const struct problem *problem, const struct forecast *forecast, double *pairs);
-/* The least that images of subapertures take in place of `pairs`, in pairs: each pixel reads an image, each record is
-   read by some lines of places of one. */
+/* A lower bound of the cost of images of subapertures in place of `pairs`, in pairs: each pixel reads an image, and
+   some lines of an image read each record. */
 double factorised_least(const struct problem *problem, double pairs);
 /* The forecast of settings whose cost is known. Errors: STATUS_FAILED without memory. */
 enum status factorised_forecast(const struct problem *problem, const struct tree_settings *settings,
                                 const struct factorised_cost *cost, struct forecast *forecast);
 
-/* stages >= 1. Errors: as factorised_cost, and STATUS_UNSUPPORTED for records too long. *out is NULL then. */
+/* stages >= 1. Errors: as factorised_cost, and STATUS_UNSUPPORTED for records that are too long. *out is NULL on error.
+   */
 enum status factorised_plan(const struct problem *problem, const struct tree_settings *settings,
                             struct factorised **out);
 /* Fill needed, direct and add to flops, line by line. The images' part of factorised_plan. */

@@ -95,7 +95,7 @@ static void scratch_make(struct factorised *plan)
                                                        .boxes = (void *)(block + from[4]),
                                                        .trace = block + from[5],
                                                        .row = block + from[6]};
-        /* What lies behind a trace is computed with, unused: what memory holds may be subnormal, which is slow. */
+        /* Values behind a trace are computed with, unused: leftovers in memory may be subnormal, which is slow. */
         memset(block + from[5], 0, bytes[5]);
         memset(block + from[6], 0, bytes[6]);
     }

@@ -1,4 +1,4 @@
-/* Polar grids of subapertures: what they must hold, their frequencies, what they can hold (grids.h). */
+/* Polar grids of subapertures: the extent needed, their frequencies, the extent available (grids.h). */
 #include "backprojection/factorised/grids.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@ static const double RESIDUAL_MOST = 1; /* frequencies of d along rho and along a
 static const double SINE_MOST = 0.9;   /* off the axis */
 static const double RADII_LEAST = 3;   /* rho over the subaperture's radius */
 enum { PINGS_MOST = 64, BISECTIONS = 12, EDGE = 9, CLIPS = 8 };
-/* Of a grid, and of one that is summed from records, whose every line is looked at: beyond, there is none. */
+/* Of a grid, and of one summed from records, whose every line is checked: larger grids are not made. */
 enum { PLACES_MOST = 1 << 28, LINES_MOST = 1 << 20, RECORD_LINES_MOST = 1 << 13 };
 
 static struct sector sector_none(void)
@@ -36,8 +36,8 @@ static double delay_of(const struct acquisition *a, int ping, int receiver, stru
                        place, a->sound_speed);
 }
 
-/* s/m: greatest |dd/drho| and |dd/dt|, t across the ray, of a subaperture's pairs at a place. Of the receivers of a
-   ping those count that are furthest along x and y. */
+/* s/m: greatest |dd/drho| and |dd/dt|, t across the ray, of a subaperture's pairs at a place. Only the outermost
+   receivers of a ping along x and y count. */
 static void slopes(const struct tree *tree, const struct subaperture *part, struct vector place, double *along,
                    double *across)
 {
@@ -45,7 +45,7 @@ static void slopes(const struct tree *tree, const struct subaperture *part, stru
     const double c = a->sound_speed, dx = place.x - part->x, dy = place.y - part->y, rho = hypot(dx, dy);
     const double step = 1e-4 * rho, ex = dx / rho * step, ey = dy / rho * step;
     const int pings = part->pings < PINGS_MOST ? part->pings : PINGS_MOST;
-    *along = *across = rho > 0 ? 0 : INFINITY; /* no ray leads to the centre: fmax would leave out its NaN */
+    *along = *across = rho > 0 ? 0 : INFINITY; /* no ray leads to the centre: fmax would drop its NaN */
     for (int n = 0; n < pings && rho > 0; n++) {
         const int p = part->ping + (pings > 1 ? (int)((long long)n * (part->pings - 1) / (pings - 1)) : 0);
         const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;
@@ -201,7 +201,7 @@ void sector_rates(const struct tree *tree, const struct subaperture *part, int v
 {
     enum { PLACES = 5 };
     const struct acquisition *a = tree->problem.acquisition;
-    /* The law is of a flat band: the outermost pairs stand for stretches of the aperture, not for their ends. */
+    /* The law is of a flat band: the outermost pairs represent stretches of the aperture, not its ends. */
     const double pairs = (double)part->pings * a->receivers, cells = pairs > 1 ? pairs / (pairs - 1) : 1;
     for (int k = 0; k < PLACES * PLACES; k++) {
         const double rho = sector.rho_low * pow(sector.rho_high / sector.rho_low, (double)(k / PLACES) / (PLACES - 1));
@@ -236,7 +236,7 @@ void grid_cover(const struct tree *tree, const struct polar_step *step, struct s
     *polar = (struct polar){.lines = 0};
     if (sector_is_empty(sector) || !(sector.rho_high < PLACES_MOST * step->rho && 1 < LINES_MOST * step->sine))
         return;
-    /* One more than is read, so that rounding does not decide whether the sector's edges are. */
+    /* One more than is read: rounding then does not decide on the sector's edges. */
     const int places = margin_places(tree) + 1, lines = margin_lines(tree, step, sector.rho_low) + 1;
     polar->place_first = (int)floor(sector.rho_low / step->rho) - places;
     polar->places = (int)ceil(sector.rho_high / step->rho) + places - polar->place_first + 1;
@@ -291,7 +291,7 @@ void grid_clip_records(const struct tree *tree, const struct subaperture *part, 
     const double length = (a->samples - 1) / a->fs, slack = 1e-6 / a->fs;
     for (int n = 0; n < CLIPS && polar->lines > 0 && polar->lines <= RECORD_LINES_MOST; n++) {
         const double near = polar->place_first * step->rho, far = near + (polar->places - 1) * step->rho;
-        double before = 0, behind = 0; /* s that the worst delays lie outside of the records */
+        double before = 0, behind = 0; /* s: greatest distance of delays outside of the records */
         for (int k = 0; k < polar->lines; k++) {
             const double s = (polar->line_first + k) * step->sine;
             const struct vector first = place_at(tree, part, view, near, s), last = place_at(tree, part, view, far, s);

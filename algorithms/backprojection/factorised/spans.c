@@ -1,9 +1,9 @@
-/* Which pixels are read from which subaperture's image (tree.h). */
+/* Which pixels read which subaperture's image (tree.h). */
 #include <math.h>
 
 #include "backprojection/factorised/tree.h"
 
-/* Leave pixels [begin, end) of the whole numbers between two reals. */
+/* Reduce a span to pixels between two real numbers. */
 static struct pair_span whole_pixels(double first, double last, int count)
 {
     const bool some = first <= last; /* and both are numbers */
@@ -45,8 +45,8 @@ static struct pair_span inside_grid(const struct tree *tree, const struct subape
     return whole_pixels(fmin(first, last), fmax(first, last), line->count);
 }
 
-/* Pixels that lie inside the aperture limit of all of its pings: inside the mean one's cone, narrowed by what
-   transmitters and normals deviate. */
+/* Pixels inside the aperture limit of all its pings: inside the mean ping's cone, narrowed by the deviations of
+   transmitters and normals. */
 static int inside_limit(const struct tree *tree, const struct subaperture *part, int view,
                         const struct pixel_line *line, struct pair_span spans[2])
 {
@@ -67,7 +67,7 @@ static int inside_limit(const struct tree *tree, const struct subaperture *part,
     return pair_spans(&mean, 0, part->normal, line, spans);
 }
 
-/* The same cone widened: outside of it no pair counts. Leaves what of a span lies inside. */
+/* The same cone widened: outside of it no pair counts. Reduces a span to its part inside. */
 static void leave_limit(const struct tree *tree, const struct subaperture *part, const struct pixel_line *line,
                         struct pair_span span, struct spans *left)
 {
@@ -125,7 +125,7 @@ static void take_off(struct spans *spans, const struct spans *off)
     }
 }
 
-/* Take off what larger subapertures' images, of either side, are read for, from `from` on. */
+/* Remove pixels that read larger subapertures' images, of either side, from `from` on. */
 static void take_off_larger(const struct tree *tree, int from, int patch, const struct pixel_line *line,
                             struct spans *spans)
 {

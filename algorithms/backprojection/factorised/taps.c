@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 enum { TAPS_MOST = 12, FRACTIONS = 16, STEPS = 40 };
-/* As fine as FINEST, relative, rounding moves no place that matters. */
+/* With steps of FINEST, relative, rounding has no effect that matters. */
 static const double OVERSAMPLING_MOST = 6, FINEST = 1e-12;
 
 static void weights(const struct interpolator *in, double fraction, double *w)
@@ -35,15 +35,15 @@ static double error_of(int taps, double oversampling, struct fitted *fitted)
     return sqrt(sum / FRACTIONS);
 }
 
-/* What samples and taps cost together: a sample costs as much as seven taps, whatever is done with it. */
+/* Cost of samples and taps together: a sample costs as much as seven taps. */
 static double cost_of(int taps, double oversampling)
 {
     return oversampling * (7 + taps);
 }
 
-/* The least oversampling from `least` on at which taps have the error: by false position, the error being nearly
-   exponential, where an end that stays twice counts half (Dowell, Jarratt, BIT 11, 1971). INFINITY where none
-   has it, or none that costs less than `cheapest`. */
+/* The least oversampling from `least` on with the error: by false position, as the error is nearly exponential; an end
+   that stays twice counts half (Dowell, Jarratt, BIT 11, 1971). INFINITY if none has it, or none that costs less than
+   `cheapest`. */
 static double oversampling_of(int taps, double error, double least, double cheapest)
 {
     struct fitted fitted;

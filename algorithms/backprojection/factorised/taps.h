@@ -12,9 +12,9 @@ struct polar_taps {
     double coefficients[KERNEL_BRANCHES_MOST * FITTED_TAPS_MOST]; /* [branches][taps] */
 };
 
-/* The taps whose error is at most `error` (> 0) with the least work for samples and taps together, where the axis is
-   oversampled by `least` (>= 1) at least. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED where none is that
-   accurate. */
+/* The taps with an error of at most `error` (> 0) and the least work for samples and taps together; the axis is
+   oversampled by `least` (>= 1) at least. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED where no taps are
+   that accurate. */
 enum status polar_taps_choose(double error, double least, struct polar_taps *chosen);
 
 #endif

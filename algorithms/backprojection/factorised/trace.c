@@ -23,7 +23,7 @@ typedef int vector_mask __attribute__((vector_size(VECTOR_BYTES)));
 struct crossings {
     _Alignas(64) int line[TRACE_PLACES];  /* the one below */
     _Alignas(64) real rest[TRACE_PLACES]; /* -1/2 to 1/2 from there to the next */
-    int beside[TRACE_PLACES];             /* 1: where the image's lines end, which are not to be read */
+    int beside[TRACE_PLACES];             /* 1: beyond the image's lines, not to be read */
 };
 
 INLINE vector_real load(const real *values)
@@ -52,7 +52,7 @@ static int cross(const struct polar_image *image, const struct polar_crossing *l
         double n = (sqrt(left > 0 ? left : 0) * sine + across) / rho * one - first;
         at->beside[i] = !(n >= least && n <= most);
         outside += at->beside[i];
-        n = n > least ? n : least; /* no NaN, either, becomes a line */
+        n = n > least ? n : least; /* nor does NaN become a line */
         n = n < most ? n : most;
         const double whole = floor(n);
         at->line[i] = (int)whole;
@@ -88,7 +88,7 @@ INLINE void weigh(int taps, const struct coefficients *from, vector_real rest, v
             w[t] = w[t] * rest + from->values[m * taps + t];
 }
 
-/* One vector of places, of which those of pixel lane i cross above line[i]. */
+/* One vector of places; lane i lies behind line[i]. */
 INLINE void interpolate(int taps, const struct polar_image *image, const struct coefficients *weights,
                         const struct crossings *at, int i, size_t place, vector_real *re, vector_real *im)
 {

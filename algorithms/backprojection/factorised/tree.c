@@ -1,5 +1,5 @@
-/* The tree of subapertures (tree.h): who belongs to whom, steps and grids from the largest ones down, what they can
-   hold from the smallest ones up. */
+/* The tree of subapertures (tree.h): parents and parts; steps and grids from the largest down; their available extent
+   from the smallest up. */
 #include "backprojection/factorised/tree.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 /* Steps of range, over a record's samples c/(2 fs), at most: runs of pixels are fastest below one sample a pixel
    (general/run.h), of a level's image as of the one that it is made of. */
 static const double STEP_MOST = 0.93, STEP_NEXT = 0.975;
-static const double RATE_LEAST = 10;   /* lines a unit of s: a single ping would need hardly any */
+static const double RATE_LEAST = 10;   /* lines a unit of s: a single ping would need almost none */
 static const double ANGLE_LEAST = 1.1; /* oversampling */
 static const double RANGE_MOST = 3;    /* oversampling by small steps of a record that is sampled far finer */
 
@@ -51,7 +51,7 @@ static double delay_of_middle(const struct problem *problem, struct vector tx)
     return sum / problem->patch_count;
 }
 
-/* Half way between transmitter and receiver when the echo of the patches' middle arrives, in the plane of the image. */
+/* Midpoint of transmitter and receiver when the echo of the patches' middle arrives, in the plane of the image. */
 static struct vector middle_of(const struct problem *problem, int ping, int receiver)
 {
     const struct acquisition *a = problem->acquisition;
@@ -91,7 +91,7 @@ static void subaperture_place(const struct problem *problem, struct subaperture 
     }
 }
 
-/* Subapertures of level l hold base factor^l pings each, the last one what is left. */
+/* Subapertures of level l have base factor^l pings each, the last one the rest. */
 static long long pings_of(const struct tree_settings *settings, int level)
 {
     double pings = settings->base;
@@ -129,7 +129,7 @@ static void subapertures_make(struct tree *tree)
         }
 }
 
-/* What all views of a subaperture must hold. */
+/* The extent that all views of a subaperture need. */
 static struct sector wanted(const struct tree *tree, const struct subaperture *part, int view)
 {
     const struct sector pixels = sector_of_pixels(tree, part, view);
@@ -181,7 +181,7 @@ static void level_cover(struct tree *tree, int level, struct sector *sectors)
     }
 }
 
-/* What the grids can hold, how much memory that is, and the places of each level. */
+/* The available extent of the grids, their memory, and the places of each level. */
 static void level_clip(struct tree *tree, int level)
 {
     for (int n = tree->first[level]; n < tree->first[level + 1]; n++) {
@@ -224,7 +224,7 @@ static enum status taps_make(struct tree *tree)
         return STATUS_FAILED;
     tree->band = law_band(&spectrum, a, each * each);
     tree->degree = farrow_degree(each, &spectrum, 1);
-    const double least = 0.8 * a->sound_speed / (2 * tree->band * step_most(tree, 0)); /* what that leaves at least */
+    const double least = 0.8 * a->sound_speed / (2 * tree->band * step_most(tree, 0)); /* the least that this leaves */
     enum status status = polar_taps_choose(each, fmax(ANGLE_LEAST, least), &tree->range);
     return status == STATUS_OK ? polar_taps_choose(each, ANGLE_LEAST, &tree->angle) : status;
 }

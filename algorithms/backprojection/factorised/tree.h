@@ -1,21 +1,21 @@
 /* The tree of subapertures of factorised back projection, and the polar grids of their images.
 
-   A subaperture is a stretch of pings with all their receivers. Its image, of the pairs that it holds, is kept on a
-   polar grid about its centre C: places C + rho (s b + sqrt(1 - s^2) a), rho m from C and s the sine off the axis a,
-   the direction of the patch's lines (or against it: the other side), b across. What is kept is
+   A subaperture is a stretch of pings with all their receivers. The image of its pairs lies on a polar grid about its
+   centre C: places C + rho (s b + sqrt(1 - s^2) a), rho m from C and s the sine off the axis a. a is the direction of
+   the patch's lines (or against it: the other side), b across. The grid stores
 
        f(rho, s) = image exp(-j 4 pi fc rho/c),
 
-   of which a pair's part is band limited in both coordinates: at the delay tau of a pair and d = tau - 2 rho/c its
-   frequencies are at most B/c + fc |dd/drho| cycles a metre and (fc + B/2) |dd/ds| cycles. Both are measured from
-   exact delays of the subaperture's pairs, whatever its track: ends of the grid, and places between them. Steps follow
-   from the frequencies and the taps' oversampling (taps.h). Where dd/drho takes more than RESIDUAL_MOST of the signal's
-   band B/c, a place is too near: it is not read from this image, but from those of the subaperture's parts.
+   where a pair's part is band limited in both coordinates. At the delay tau of a pair and d = tau - 2 rho/c its
+   frequencies are at most B/c + fc |dd/drho| cycles a metre and (fc + B/2) |dd/ds| cycles. Both are measured from exact
+   delays of the subaperture's pairs, on any track, at the grid's ends and between them. Steps follow from the
+   frequencies and the taps' oversampling (taps.h). Where dd/drho takes more than RESIDUAL_MOST of the signal's band
+   B/c, a place is too near. Its pixels read the images of the subaperture's parts instead.
 
    An image of level 0 is summed from the records, one of a higher level from the images of its parts, a line of equal s
-   at a time; pixels, line by line, from the largest subapertures that may be read there. Where all of a subaperture's
-   pairs do not count at a pixel, because of the records' ends or of the aperture limit, its image is not read either.
-   What no image can give is summed from the records: nothing is approximated but the interpolations. */
+   at a time. Pixels are summed line by line from the largest subapertures that may be read there. A pixel does not read
+   an image if some of its pairs do not count there (records' ends, aperture limit). What no image gives is summed from
+   the records: only the interpolations approximate. */
 #ifndef SASBENCH_BACKPROJECTION_FACTORISED_TREE_H
 #define SASBENCH_BACKPROJECTION_FACTORISED_TREE_H
 
@@ -29,7 +29,7 @@ enum { STAGES_MOST = 6 }; /* levels of images */
 
 /* Of one subaperture, one patch and one side of its lines. */
 struct polar {
-    int line_first, lines;   /* line n lies at s = (line_first + n) step; lines 0: there is no image */
+    int line_first, lines;   /* line n lies at s = (line_first + n) step; lines 0: no image */
     int place_first, places; /* place j at rho = (place_first + j) step */
     double near, far;        /* m: rho at which it may be read */
     double low, high;        /* s at which it may be read */
@@ -47,11 +47,11 @@ struct subaperture {
     int level;            /* 0: of records */
     int parent;           /* -1: none */
     int child, children;  /* its parts */
-    double x, y, radius;  /* m: centre, and how far transmitters and receivers are from it */
+    double x, y, radius;  /* m: centre; greatest distance of its elements */
     struct vector tx;     /* m: the transmitters' mean */
-    double tx_radius;     /* m: how far they are from it */
+    double tx_radius;     /* m: their greatest distance from it */
     struct vector normal; /* the mean of acquisition_normal */
-    double normal_radius; /* rad: how far those turn from it */
+    double normal_radius; /* rad: their greatest angle to it */
     size_t values;        /* of its images, real */
     struct polar *polars; /* [views] in the tree's */
 };
@@ -60,29 +60,29 @@ struct subaperture {
 struct polar_step {
     double rho, sine;       /* m, 1 */
     int place_first, count; /* places of any subaperture */
-    double tangent;         /* of the greatest angle between a ray and a line that is read */
+    double tangent;         /* of the greatest angle between a ray and a line it reads */
 };
 
 struct tree_settings {
-    double error;             /* the relative L2 error of the image that the interpolations may make */
+    double error;             /* relative L2 error of the image by the interpolations */
     int base, factor, stages; /* pings of the smallest subapertures, parts of the larger ones; levels of images */
 };
 
-/* The error of one interpolation. An image's is the root of the sum of squares of the records' and of two each time
-   that images are read; a sixth is left for echoes that crowd at a band's edge: the law is of a flat band. */
+/* The error of one interpolation. An image's squared error is the sum of the records' and of two for each level of
+   images. A sixth is left for echoes that crowd at a band's edge, as the law is of a flat band. */
 static inline double tree_error_each(const struct tree_settings *settings)
 {
     return 0.85 * settings->error / sqrt(2 * settings->stages + 1);
 }
 
-/* rad: what quintics may change phases by, in proportion to the error that is asked for. */
+/* rad: the phase error of quintics, in proportion to the error asked for. */
 double tree_phase_limit(const struct tree_settings *settings, const struct acquisition *acquisition);
 
 struct tree {
     struct problem problem;
     struct tree_settings settings;
     struct polar_taps range, angle;
-    double band;                /* Hz: of the compressed echoes, but for as little energy as the error allows */
+    double band;                /* Hz: of the compressed echoes; the energy outside is within the error */
     int degree;                 /* of the records' polynomials, which share the error with the images' taps */
     int views;                  /* two a patch: patch 2 + side */
     bool *along_x;              /* [patch_count] the lines' direction */
@@ -93,8 +93,8 @@ struct tree {
     double bytes;
 };
 
-/* Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED for an error that cannot be kept. *tree is to be freed all
-   the same, by tree_free, which accepts a zeroed struct. */
+/* Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED for an error that is not attainable. Free *tree with
+   tree_free in any case; tree_free accepts a zeroed struct. */
 enum status tree_make(const struct problem *problem, const struct tree_settings *settings, struct tree *tree);
 void tree_free(struct tree *tree);
 
@@ -129,12 +129,11 @@ struct spans {
     struct pair_span span[SPANS_MOST];
 };
 
-/* Pixels of a line that are read from a subaperture's image of one view: its image may be read there, those of
-   larger subapertures may not. */
+/* Pixels of a line that read a subaperture's image of one view: where no image of a larger subaperture may be read. */
 void tree_pixels(const struct tree *tree, int subaperture, int view, const struct pixel_line *line,
                  struct spans *spans);
-/* Pixels of a line of a patch for which a subaperture of level 0 is summed from its records, those left out that no
-   aperture limit of its pings holds. */
+/* Pixels of a line of a patch that sum the records of a subaperture of level 0, without those outside the aperture
+   limit of all its pings. */
 void tree_direct(const struct tree *tree, int subaperture, int patch, const struct pixel_line *line,
                  struct spans *spans);
 

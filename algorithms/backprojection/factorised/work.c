@@ -1,12 +1,11 @@
-/* What factorised back projection does: counted work, and its cost, by which the number of levels is chosen. */
+/* Counted work of factorised back projection, and its cost, which decides the number of levels. */
 #include <math.h>
 #include <stdio.h>
 
 #include "backprojection/factorised/factorised.h"
 
-/* What lines of places or pixels take: pairs of a pixel and a record, of a pixel and an image, samples of traces;
-   lines that are read from images; lines of images times the pings that they are summed from; and lines of any kind
-   times such records. */
+/* Counts of lines of places or pixels: pairs of a pixel and a record, of a pixel and an image, samples of traces; lines
+   read from images; lines of images times the pings that they sum; and lines of any kind times such records. */
 struct amounts {
     double records, images, traces, lines, pings, blocks;
 };
@@ -38,8 +37,7 @@ static void count_images(const struct tree *tree, const struct subaperture *part
     }
 }
 
-/* Every `stride`th line of a patch, for one subaperture: what is read from its images, and what is summed from its
-   records. */
+/* Count every `stride`th line of a patch, for one subaperture: reads of its images, and sums of its records. */
 static void count_pixels(const struct tree *tree, int subaperture, int patch, int stride, struct amounts *sum)
 {
     const struct subaperture *part = &tree->subapertures[subaperture];
@@ -72,8 +70,8 @@ static int stride_of(const struct tree *tree, int patch)
     return lines > 64 ? lines / 32 : 1;
 }
 
-/* In pairs of the general engine, measured: what an image takes for each pixel, a trace for each sample, its taps and
-   branches more, a line through an image, a ping that a line is summed from, and each of its records. */
+/* Costs in pairs of the general engine, measured: an image for each pixel; a trace for each sample, and for its taps
+   and branches; a line through an image; a ping that a line sums, and each of its records. */
 static const double IMAGE = 1.4, TRACE = 6, TAP = 0.6, BRANCH = 0.12, LINE = 1600, PING = 600, BLOCK = 130;
 
 /* All but the records. */
@@ -168,8 +166,8 @@ double factorised_least(const struct problem *problem, double pairs)
 
 enum status factorised_cost_direct(const struct problem *problem, const struct forecast *forecast, double *pairs)
 {
-    /* Of tables, in pairs of the general engine, measured: what a pair takes, more of it where the columns from ping to
-       ping are few and share no loads; an entry. Without tables, what a pair that shares no loads takes more, and for
+    /* Costs in pairs of the general engine, measured. With tables: a pair, more where a small number of columns from
+       ping to ping share no loads; an entry. Without tables: the extra cost of a pair that shares no loads, and for
        each value. */
     static const double PAIR = 0.19, ALONE = 0.8, COLUMNS = 8, ENTRY = 6.6, APART = 5, APART_VALUE = 1.7;
     struct problem seen = *problem;
@@ -194,7 +192,7 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
     if (status != STATUS_OK)
         return status;
     const double share = settings->error / sqrt(2 * settings->stages + 1);
-    double *error = &forecast->error[CAUSE_INTERPOLATION]; /* of the records alone, which have a share of it */
+    double *error = &forecast->error[CAUSE_INTERPOLATION]; /* of the records alone, a share of the error */
     *error = hypot(settings->error, sqrt(fmax(*error * *error - share * share, 0)));
     forecast->units = cost->blocks;
     forecast->apart = 0; /* images are sampled more finely than records */

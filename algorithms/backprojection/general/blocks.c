@@ -12,7 +12,7 @@
 
 enum { EXACT = 64 }; /* pixels that are evaluated one by one before a block is tried again */
 
-/* fmin and fmax are calls. */
+/* Comparisons, as fmin and fmax are calls. */
 static double lesser(double a, double b)
 {
     return a < b ? a : b;
@@ -95,8 +95,8 @@ struct ping_box ping_box_join(const struct ping_box *a, const struct ping_box *b
     return box;
 }
 
-/* The longest block from `begin` on, in pixels: all, as is usual; or from the distance at its beginning, then from the
-   distance of all that it would hold, which any part of it keeps. */
+/* The longest block from `begin` on, in pixels: usually all of them. Else by the distance at its beginning, then by the
+   least distance of its pixels, which is valid for any part of it. */
 static int block_longest(const struct ping_box *box, const struct pixel_line *line, int begin, int end)
 {
     double step = line->x_step > 0 ? line->x_step : line->r_step, whole = (end - begin - 1) * step;

@@ -1,7 +1,7 @@
-/* Runs of pixels take values from records, nearest samples, between two on a line, by polynomials from Farrow
-   branches or by a kernel of many taps, which are fixed by their phase and added to the sums. Copies of samples are
-   the limit: those of neighbouring pixels are loaded together where they lie near each other. This file is compiled
-   once for each precision and instruction set (BP_ISA names it). */
+/* Runs of pixels read records (nearest sample, linear, polynomials of Farrow branches, or a kernel of many taps) and
+   add the values times phase factors to the sums. Copies of samples are the limit: those of neighbouring pixels are
+   loaded together where they lie near each other. This file is compiled once for each precision and instruction set
+   (BP_ISA names it). */
 #include "backprojection/general/run.h"
 #include "common/phasor.h"
 
@@ -92,8 +92,8 @@ INLINE vector_real pick(bool line, vector_real windows, vector_int place, const 
 }
 
 /* The same out of windows that are loaded whole: from the predecessor of a middle pixel's sample on, where the others
-   read that sample or a neighbour of it. The last value is only a line's next one; else it may lie one past the row's
-   end. */
+   read that sample or a neighbour of it. The last value is used only with linear interpolation; otherwise it may lie
+   one past the row's end. */
 INLINE void take_windows(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run,
                          int i, vector_real *x, vector_real *y)
 {
@@ -184,14 +184,14 @@ INLINE void take_branches_apart(int branches, struct record record, size_t apart
     *im = y;
 }
 
-/* How a value is taken: the nearest one, between two on a line, or from `branches` > 1. Constants where inlined. */
+/* How a value is read: nearest, linear, or from `branches` > 1. Constants where inlined. */
 struct taking {
     bool line;
     int branches;
     enum loading loading;
 };
 
-/* Add to LANES pixels from i on what they take from a record. */
+/* Add a record's values to LANES pixels from i on. */
 INLINE void take(struct taking taking, struct record record, size_t apart, const struct run *run, int i,
                  vector_real *re, vector_real *im)
 {
@@ -248,7 +248,7 @@ INLINE void add_taken(struct taking taking, int receivers, const struct receiver
         return;
     vector_real x = {0}, y = {0};
     for (int g = 0; g < receivers; g++) {
-        for (int k = count; k < i + LANES; k++) { /* the last vector's other pixels read what may be read */
+        for (int k = count; k < i + LANES; k++) { /* the last vector's other pixels read valid places */
             runs[g].sample[k] = runs[g].sample[count - 1];
             runs[g].rest[k] = runs[g].cycles[k] = 0;
         }

@@ -1,7 +1,7 @@
-/* Back projection for any track: records are compressed in batches that stay in the cache; each line of pixels, along
-   azimuth or range, is summed by one thread, pairs in order, so that the bits do not depend on the number of threads.
-   Delays are exact at six points of a block of pixels and quintics between them (general/blocks.c); with exact=true,
-   and near the array, every delay is evaluated. */
+/* Back projection for any track. Records are compressed in batches that stay in the cache. One thread sums each line of
+   pixels, along azimuth or range, pairs in order, so that the bits do not depend on the number of threads. Delays are
+   exact at six points of a block of pixels and quintics between them (general/blocks.c); with exact=true, and near the
+   array, every delay is evaluated. */
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
@@ -59,7 +59,7 @@ static void span_count(const struct ping_box *box, const struct pixel_line *line
         }
 }
 
-/* What a patch's lines, of which each `step`-th is looked at, cost for one ping. */
+/* Cost of a patch's lines for one ping; only each `step`-th line is counted. */
 static double lines_cost(const struct ping_box *box, const struct grid *grid, bool along_x, int step)
 {
     struct line_counts counts = {0};
@@ -83,7 +83,7 @@ static double steep_most(const struct bp *bp)
     return bp->kernel.branches > 0 || bp->table.branches > 1 ? 0.99 : 0.49;
 }
 
-/* Count what ping p's pairs with a patch are made of, on each `step`-th line: [along range, along x]. */
+/* Count the blocks and pixels of ping p's pairs with a patch, on each `step`-th line: [along range, along x]. */
 static void ping_count(const struct bp *bp, int p, const struct ping_box *box, const struct grid *grid,
                        struct line_counts *sum)
 {
@@ -112,8 +112,7 @@ static void ping_count(const struct bp *bp, int p, const struct ping_box *box, c
     sum->apart += counts.apart * lines / looked;
 }
 
-/* Blocks of some pings that are met and of some lines, times all of them. Exact delays count as the blocks that last as
-   long. */
+/* Blocks, extrapolated from some pings that are met and some lines. Exact delays count as blocks of the same time. */
 static void general_units(const struct bp *bp, struct forecast *forecast)
 {
     const struct problem *problem = &bp->problem;
@@ -201,8 +200,8 @@ static enum status general_plan(struct bp *bp)
     return STATUS_OK;
 }
 
-/* Where the batch ends that begins with record `first`: between records that are summed together, so that bits do not
-   depend on it. */
+/* The end of the batch that begins with record `first`. It does not separate records that are summed together, so that
+   bits do not depend on it. */
 static size_t batch_end(const struct general *general, const struct acquisition *a, size_t first)
 {
     const size_t pairs = (size_t)a->pings * (size_t)a->receivers, end = first + (size_t)general->batch;
@@ -212,7 +211,7 @@ static size_t batch_end(const struct general *general, const struct acquisition 
     return joined > 1 ? end - end % (joined * receivers) : end - end % receivers % BP_RECORDS;
 }
 
-/* Leave out the records of pings at a batch's ends that no pixel meets. */
+/* Leave out records at a batch's ends whose pings are not met. */
 static void batch_trim(const struct bp *bp, size_t *first, size_t *end)
 {
     const size_t receivers = (size_t)bp->problem.acquisition->receivers;
@@ -222,8 +221,8 @@ static void batch_trim(const struct bp *bp, size_t *first, size_t *end)
         --*end;
 }
 
-/* Lines along range pass through whole records: where a batch of long ones does not stay in the cache, all lines are
-   summed part by part, each of which reads as much of the records as does. */
+/* Lines along range pass through whole records. If a batch of long ones does not stay in the cache, all lines are
+   summed part by part: the records' part for each stays. */
 static int line_parts(const struct general *general, const struct grid *grid, bool along_x, size_t row_bytes)
 {
     const double whole = general->batch * (double)row_bytes / BATCH_BYTES;
@@ -333,7 +332,8 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
     stages_end(stages, "store");
 }
 
-/* Neighbouring pings of few receivers share blocks of pixels, some of which are outside the aperture of one of them. */
+/* Neighbouring pings with a small number of receivers share blocks of pixels; some are outside the aperture of one
+   ping. */
 static double general_beside(const struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;

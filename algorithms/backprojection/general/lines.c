@@ -29,7 +29,7 @@ struct bp_layout bp_layout_make(enum precision precision, size_t length, int bra
     return layout;
 }
 
-/* Add pings to a line's pixels `within`, which hold those of all of them. */
+/* Add pings to a line's pixels `within`, which contain those of each ping. */
 static void sum_span(const struct bp_lines *lines, const struct ping_box *box, const struct bp_pings *pings,
                      const struct pixel_line *line, struct pair_span within, void *re, void *im)
 {
@@ -47,8 +47,8 @@ static void sum_span(const struct bp_lines *lines, const struct ping_box *box, c
     }
 }
 
-/* Is the delay of every pixel of `within` inside every receiver's record that begins at t0, by the least and the
-   longest way there is? */
+/* Is the delay of every pixel of `within` inside every receiver's record from t0 on, by the shortest and the longest
+   path? */
 static bool inside_record(const struct bp_lines *lines, const struct ping_box *box, double t0,
                           const struct pixel_line *line, struct pair_span within)
 {
@@ -91,7 +91,7 @@ static void add_alone(const struct bp_lines *lines, const struct line_sums *to, 
     }
 }
 
-/* Neighbouring pings that wait to be summed together, the first of them p. */
+/* Neighbouring pings that wait to be summed together; p is the first. */
 struct waiting {
     int p, count;
     struct bp_ping ping[BP_RECORDS];
@@ -125,9 +125,9 @@ int bp_pings_joined(const struct acquisition *acquisition)
     return acquisition->receivers < BP_RECORDS ? BP_RECORDS / acquisition->receivers : 1;
 }
 
-/* Can a ping's records be summed with those that wait? They share blocks of pixels, which pays where most of the
-   pixels are all pings'; where each delay is evaluated there are none. Only pings of the same few ever join, so that
-   bits do not depend on where a batch begins. */
+/* Can a ping's records be summed with those that wait? They share blocks of pixels, which pays where most pixels belong
+   to all pings; without interpolated delays there are no blocks. Only pings of the same fixed group join, so that bits
+   do not depend on where a batch begins. */
 static bool joins(const struct bp_lines *lines, const struct waiting *waiting, int p, const struct bp_ping *ping)
 {
     const struct bp_ping *first = &waiting->ping[0];

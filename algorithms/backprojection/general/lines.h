@@ -1,4 +1,4 @@
-/* Lines of pixels and batches of records: what the general engine and factorised back projection share around the inner
+/* Lines of pixels and batches of records: shared by the general engine and factorised back projection, around the inner
    sums (sum.h). */
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_LINES_H
 #define SASBENCH_BACKPROJECTION_GENERAL_LINES_H
@@ -10,7 +10,7 @@
 /* How a record of `length` values in each of `branches` lies in memory; `blocks`: it is read as BP_BRANCHES. */
 struct bp_layout bp_layout_make(enum precision precision, size_t length, int branches, bool blocks);
 
-/* Values of a record's branch: as the trace's, but for the guards of a kernel. */
+/* Values of a record's branch: those of the trace without a kernel's guards. */
 size_t bp_branch_length(const struct bp *bp);
 /* Complex values of a record before they are spread: its trace, and after it the branches of a kernel. */
 size_t bp_record_values(const struct bp *bp);
@@ -22,13 +22,12 @@ void bp_record_fill(const struct bp *bp, const struct bp_layout *layout, const s
 struct bp_lines {
     const struct bp *bp; /* medium, table, precision */
     bp_sum_function *sum;
-    const struct acquisition *acquisition; /* where pings and receivers are, seen from the lines' axes */
+    const struct acquisition *acquisition; /* in the lines' axes */
     const struct vector *normal;           /* [pings] acquisition_normal */
     const struct ping_box *boxes;          /* [pings] */
     const void *rows;                      /* of record `first` and those behind it */
     struct bp_layout layout;
-    struct pair_span
-        shown; /* pixels of a line that are wanted; others near them may be added to as well. {0, 0}: all */
+    struct pair_span shown; /* wanted pixels of a line; sums of others near them may change as well. {0, 0}: all */
 };
 
 /* Add records [first, first + count) to the pixels of a line that lie inside their times and inside the aperture limit:

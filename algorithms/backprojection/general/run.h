@@ -1,5 +1,5 @@
-/* What the general engine's inner files share: runs of pixels. runs.c makes them from a block's delays, gather.c adds
-   what they take from the records to the sums. budget.h has the error budget.
+/* Runs of pixels, for the general engine's inner files. runs.c makes them from a block's delays; gather.c reads the
+   records and adds to the sums. budget.h has the error budget.
 
    A RUN OF PIXELS. A line of pixels is cut into blocks (blocks.c). In each block the delay to a receiver is a quintic
    through six exact delays at Chebyshev points (x). A block is cut into runs of at most RUN_PIXELS pixels. A run is
@@ -81,8 +81,8 @@
 #include "backprojection/general/sum.h"
 #include "common/lanes.h"
 
-/* Are there vectors of float with instructions that no compiler makes of portable code: windows of four values are
-   permuted as one, vectors rounded as one? */
+/* Vectors of float with instructions that no compiler makes of portable code: one permutes a window of four values, one
+   rounds a vector? */
 #if defined __AVX__ && !REAL_DOUBLE
 #define WINDOWS 1
 #else
@@ -94,7 +94,7 @@
 #else
 #define PERMUTES 0
 #endif
-/* Can it take the values from two vectors? Then the samples of Farrow branches lie in blocks (struct bp_layout). */
+/* Can it permute two vectors? Then the samples of Farrow branches lie in blocks (struct bp_layout). */
 #define BLOCKS        (VECTOR_BYTES == 64)
 #define BLOCK_ADVANCE (LANES / 2) /* samples from one block to the next */
 
@@ -129,8 +129,8 @@ struct run {
     _Alignas(VECTOR_BYTES) real cycles[RUN_ROOM]; /* phase, |cycles| <= 1/2 */
 };
 
-/* From a delay to a point, point = (tau - t0) fs fine + shift, whose whole part is a sample or one of a cubic's
-   intervals, and from a point to cycles, cycles = point ratio + base. */
+/* From a delay to a point, point = (tau - t0) fs fine + shift; its whole part is a sample or an interval of a cubic.
+   From a point to cycles, cycles = point ratio + base. */
 struct scale {
     double t0, fs, fine, shift, ratio, base;
 };
@@ -152,8 +152,8 @@ struct receiver_group {
 #define BP_RUNS REAL_ISA_NAME(bp_runs)
 void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, double (*tau)[GROUP_RECEIVERS]);
 
-/* Add pixels [begin, end) of one run of each of the group's records to the sums, re[0] of the run's first pixel.
-   Changes what the runs hold behind them. */
+/* Add pixels [begin, end) of one run of each of the group's records to the sums; re[0] is the run's first pixel.
+   Overwrites the runs behind these pixels. */
 #define BP_GATHER REAL_ISA_NAME(bp_gather)
 void BP_GATHER(const struct receiver_group *group, enum loading loading, struct pair_span pixels, struct run *runs,
                real *re, real *im);
@@ -162,10 +162,10 @@ void BP_GATHER(const struct receiver_group *group, enum loading loading, struct 
 static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -0.25881904510252076,
                                    0.25881904510252076,  0.70710678118654752,  0.96592582628906829};
 
-/* The pixel of a vector whose sample its window is placed by. */
+/* The pixel of a vector whose sample places the window. */
 enum { MIDDLE_LANE = LANES / 2 - 1 };
 
-/* Fixed-point numbers: what brings a double to 19 or to 32 bits of fraction, the worth of their last bits. */
+/* Fixed-point numbers: the addends for 19 and 32 bits of fraction, and the values of their last bits. */
 enum { POINT_BITS = 19, POINTS_MOST = 4000, FIXED_32_HIGH = 0x41380000 };
 #define FIXED_19 0x1.8p33
 #define FIXED_23 0x1.8p29
@@ -178,8 +178,8 @@ INLINE vector_real *at(const real *values)
     return (vector_real *)values;
 }
 
-/* PART: the order of pixels in the parts of a vector, from which one shuffle takes the low halves of all (EVEN) or the
-   high ones (ODD) as they come. ALL: all pixels in order. */
+/* PART: the order of pixels in the parts of a vector from which one shuffle takes all low halves (EVEN) or all high
+   ones (ODD) in order. ALL: all pixels in order. */
 #if REAL_DOUBLE
 #define ALL(v) PART(v, 0)
 #if VECTOR_BYTES == 64

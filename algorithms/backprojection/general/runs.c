@@ -1,7 +1,6 @@
-/* The quintics of a block of pixels, and from them its runs (run.h): positions in the records and phases, which
-   gather.c takes up. Delay and phase are double, reduced to a fraction of a cycle before they become `real`; where
-   lines bend little, only their straight part is. This file is compiled once for each precision and instruction set
-   (BP_ISA names it). */
+/* The quintics of a block of pixels, and from them its runs (run.h): positions in the records and phases, for gather.c.
+   Delay and phase are double, reduced to a fraction of a cycle before they become `real`. In runs that bend little only
+   the straight part is double. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -28,8 +27,8 @@
 #endif
 #endif
 
-enum { FLAT_LEAST = 64 };   /* pixels of a run below which single precision does not pay */
-#define RATIO_LEAST 0x1p-40 /* cycles to a point below which single precision could not hold the inverse of a bend */
+enum { FLAT_LEAST = 64 };   /* fewest pixels of a run where single precision pays */
+#define RATIO_LEAST 0x1p-40 /* least cycles a point: below, the inverse of a bend overflows single precision */
 
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned vector_unsigned __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
@@ -74,8 +73,8 @@ INLINE void quintics(double (*tau)[GROUP_RECEIVERS], const struct scale *scale, 
 }
 
 /* Points of a run of pixels from `first` pixels past the block's middle on, as fixed-point numbers (run.h). Bits are
-   cut off, which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole
-   vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is inlined. */
+   cut off, which is floor: the rounding mode affects only the last bit. Fills whole vectors, up to LANES - 1 pixels
+   more than `count`. `reading` is a constant where this is inlined. */
 #define LANE(n) n
 #define LOW(v)  (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
 #define HIGH(v) (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
@@ -273,15 +272,14 @@ INLINE void runs_fixed(const struct receiver_group *group, double (*quintic)[GRO
     }
 }
 
-/* The part of a run's `count` pixels, from pixel `first` of the line on, that is within some others. */
+/* The part of a run's `count` pixels, from pixel `first` of the line on, that lies within a span. */
 INLINE struct pair_span part_within(struct pair_span within, int first, int count)
 {
     const int begin = within.begin - first, end = within.end - first;
     return (struct pair_span){begin < 0 ? 0 : begin < count ? begin : count, end > count ? count : end < 0 ? 0 : end};
 }
 
-/* Records of several pings are added together to the pixels that all of them have, and one by one to those on either
-   side. */
+/* Records of several pings are added together to pixels of all pings, and one by one to those on either side. */
 static void gather_parts(const struct receiver_group *group, enum loading loading, int first, int count,
                          struct run *runs)
 {
@@ -296,7 +294,7 @@ static void gather_parts(const struct receiver_group *group, enum loading loadin
         common.begin = common.end = count;
     struct receiver_group one = *group;
     one.receivers = 1;
-    /* From the run's end on, for what lies behind a part may change. */
+    /* From the run's end on, as values behind a part may change. */
     for (int part = 0; part < 3; part++) {
         if (part == 1 && common.begin < common.end)
             BP_GATHER(group, loading, common, runs, re, im);

@@ -1,6 +1,6 @@
 /* The inner sums of the general engine over one line of pixels: exact delays, of each pixel or at the Chebyshev points
-   of blocks, whose runs are made in runs.c. Short loops over arrays in the first-level cache, so that many pixels are
-   in flight at once. This file is compiled once for each precision and instruction set (BP_ISA names it). */
+   of blocks, whose runs are made in runs.c. Short loops over arrays in the first-level cache keep many pixels in flight
+   at once. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/general/sum.h"
 
 #include <math.h>
@@ -12,8 +12,8 @@
 
 enum { DELAYS = NODES * BP_BLOCKS }; /* that are evaluated together, to each receiver of a group */
 
-/* Places (x, r, 0) on a line as a ping sees them: seconds from the transmitter, and the vector to there from where the
-   array's origin is by then. */
+/* Places (x, r, 0) on a line seen from a ping: seconds from the transmitter, and the vector to each from the array's
+   origin at that time. */
 struct places {
     int count;
     double x[RUN_PIXELS], r[RUN_PIXELS];
@@ -34,7 +34,7 @@ static void legs_out(const struct bp_medium *medium, const struct bp_ping *ping,
     }
 }
 
-/* A ping's velocity; c^2 - |v|^2 and its inverse; so slow that the delay's root may be taken in one form. */
+/* A ping's velocity; c^2 - |v|^2 and its inverse; `slow`: the delay's root may be taken in one form. */
 struct motion {
     struct vector v;
     double e, one_e;
@@ -87,7 +87,7 @@ struct line_sum {
     real *re, *im; /* of the line's pixel 0 */
 };
 
-/* Every delay of pixels [begin, end) evaluated, of those that are shown at least. */
+/* Evaluate every delay of pixels [begin, end), at least of those shown. */
 static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, int begin, int end,
                       struct pair_span shown)
 {
@@ -122,13 +122,13 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
 #pragma omp simd
             for (int i = 0; i < count; i++) {
                 double q = (tau[i] - scale->t0) * scale->fs * table->upsample;
-                q = q > least ? q : least; /* what rows hold, but for rounding; nothing else becomes an index */
+                q = q > least ? q : least; /* inside the rows, but for rounding; nothing else becomes an index */
                 q = q < last ? q : last;
                 double point = floor(q * one + scale->shift * one), cycles = medium->fc * tau[i];
                 double sample = floor((point + 0.5) / one);
                 run.sample[i] = (int)sample;
                 run.step[i] = (int)(point - sample * one);
-                const double within = q * one - point; /* what is rounded to the nearest step needs no more */
+                const double within = q * one - point; /* enough for rounding to the nearest step */
                 run.rest[i] = (real)(cubics ? within : branches ? within + scale->shift - 0.5 : run.step[i] / one);
                 run.cycles[i] = (real)(cycles - floor(cycles + 0.5));
             }
@@ -142,7 +142,7 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
     }
 }
 
-/* Every delay of a block evaluated, of each ping for its own pixels. */
+/* Evaluate every delay of a block, of each ping for its own pixels. */
 static void sum_block_exact(const struct line_sum *sum, const struct bp_pings *pings, const struct bp_block *block)
 {
     for (int p = 0; p < pings->count; p++) {
@@ -152,8 +152,8 @@ static void sum_block_exact(const struct line_sum *sum, const struct bp_pings *p
     }
 }
 
-/* Have what a group reads of its records fetched together, between samples `low` and `high` of each. Not of blocks,
-   whose parts lie side by side: the processor sees by itself what comes next. */
+/* Prefetch a group's samples `low` to `high` of each record. Not of blocks, whose parts lie side by side: the processor
+   prefetches these itself. */
 INLINE void prefetch(const struct receiver_group *group, const double *low, const double *high)
 {
     enum {
@@ -171,8 +171,8 @@ INLINE void prefetch(const struct receiver_group *group, const double *low, cons
     }
 }
 
-/* A line reads few values of each record and comes back to the next line much later. False where a delay is not one
-   that rows hold, `first` to `last`: then no quintic through it may become an index. */
+/* A line reads a short part of each record, and the next line reads it much later. False where a delay is outside the
+   rows, `first` to `last`: then no quintic through it may become an index. */
 INLINE bool reads_inside(const struct receiver_group *group, double (*tau)[GROUP_RECEIVERS], double first, double last)
 {
     const struct scale *scale = group->scale;
@@ -209,7 +209,7 @@ static void nodes_place(const struct pixel_line *line, int block_count, const st
     }
 }
 
-/* Delays to the receivers of a group; those that there are not repeat the last one. */
+/* Delays to the receivers of a group; missing receivers repeat the last one. */
 INLINE void group_delays(const struct motion *motion, const struct places *places, const struct vector *rx,
                          int receivers, double (*tau)[GROUP_RECEIVERS])
 {
@@ -241,7 +241,7 @@ static struct scale scale_make(const struct bp_medium *medium, const struct bp_t
                           .base = cycles - floor(cycles)};
 }
 
-/* Transmitters, receivers and motion of the records of several pings; those that there are not repeat the last one. */
+/* Transmitters, receivers and motion of the records of several pings; missing records repeat the last one. */
 struct together {
     double tx[3][GROUP_RECEIVERS], rx[3][GROUP_RECEIVERS], v[3][GROUP_RECEIVERS];
     double e[GROUP_RECEIVERS], one_e[GROUP_RECEIVERS];

@@ -28,8 +28,8 @@ struct bp_ping {
     struct pair_span within; /* pixels that it is added to */
 };
 
-/* Neighbouring pings that are summed together: one, or several of few receivers, BP_RECORDS in all at the most, which
-   begin to record at the same time after emission and whose records follow one another. */
+/* Neighbouring pings that are summed together: one, or several with at most BP_RECORDS receivers in all. They start
+   recording at the same time after emission, and their records follow one another. */
 enum { BP_RECORDS = 4 };
 struct bp_pings {
     int count;
@@ -37,8 +37,8 @@ struct bp_pings {
 };
 
 /* Add the receivers' contributions to the pixels of some blocks of a line, where all delays lie inside the record:
-   re[i], im[i] += value times exp(+j 2 pi fc tau) for pixel i, of each ping for the pixels that it is added to. Blocks
-   of several pings are such for each of them; those of one lie within its pixels. */
+   re[i], im[i] += value times exp(+j 2 pi fc tau) for pixel i, of each ping for the pixels `within`. Blocks of several
+   pings are valid for each of them; those of one lie within its pixels. */
 typedef void bp_sum_function(const struct bp_medium *medium, const struct bp_table *table, const struct bp_pings *pings,
                              const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re,
                              void *im);

@@ -78,7 +78,7 @@ INLINE void sum_block(int branches, const struct chunk *chunk, const struct bp_r
     }
 }
 
-/* All columns, in blocks as wide as each other whose sums stay in the cache. */
+/* All columns, in blocks of equal width whose sums stay in the cache. */
 INLINE void sum_branches(int branches, const struct chunk *shared)
 {
     const struct chunk own_chunk = *shared, *chunk = &own_chunk;

@@ -1,5 +1,4 @@
-/* What row_tables.c, sums.c and row.c share: a chunk of a row, tabulated by one, summed by the next. row.h has the
-   picture. */
+/* A chunk of a row: row_tables.c tabulates it, sums.c sums it, row.c calls both. row.h has the picture. */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_CHUNK_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_CHUNK_H
 
@@ -22,7 +21,7 @@ struct delay_terms {
 
 /* What all receivers share. */
 struct row_tables {
-    int group_count; /* in scratch->groups, with their part of the delays and one more group that ends the last */
+    int group_count; /* in scratch->groups, and one more group that ends the last */
     int pieces;      /* in scratch->pieces; 0: each delay is evaluated */
     struct delay_terms terms;
     bool inside_record; /* proved for all of the row's delays */
@@ -37,7 +36,7 @@ struct chunk {
     const struct bp_row_scratch *scratch;
     int begin, end;
     int entries;         /* of all groups, in whole vectors */
-    bool sparse;         /* entries are left out: scratch->kept holds the shifts of those that are there */
+    bool sparse;         /* entries are left out: scratch->kept holds the shifts of the others */
     const int *shift;    /* [entries] */
     int from, to;        /* shifts [from, to) are summed */
     const real *sr, *si; /* the receiver's traces, their ping 0 */
@@ -45,13 +44,13 @@ struct chunk {
     size_t stride;
 };
 
-/* How the row's delays are found; the count of their pieces, 0: each by itself. `offset`: of any receiver at the most,
-   INFINITY: each is to be evaluated, as some may lie at the record's ends; entries: of all groups, at present by how
-   far the ping lies ahead of the column in scratch->ahead. */
+/* Choose how the row's delays are found; returns the number of pieces, 0: each delay is evaluated. `offset`: the
+   greatest of any receiver; INFINITY: evaluate each, as some may lie at the record's ends. entries: of all groups;
+   scratch->ahead holds, on entry, how far the ping lies ahead of the column. */
 #define DELAYS_PLAN REAL_ISA_NAME(bp_delays_plan)
 int DELAYS_PLAN(const struct bp_row *row, const struct delay_terms *terms, double offset, int entries);
 
-/* Where the row has pieces: their polynomials for the receiver that is `offset` metres ahead of the transmitter. */
+/* The polynomials of the row's pieces, if any, for the receiver that is `offset` metres ahead of the transmitter. */
 #define DELAYS_RECEIVER REAL_ISA_NAME(bp_delays_receiver)
 void DELAYS_RECEIVER(const struct bp_row *row, const struct row_tables *tables, double offset);
 
@@ -59,7 +58,8 @@ void DELAYS_RECEIVER(const struct bp_row *row, const struct row_tables *tables, 
 #define DELAYS_MAKE REAL_ISA_NAME(bp_delays_make)
 void DELAYS_MAKE(const struct row_tables *tables, double offset, const struct chunk *chunk);
 
-/* Divide the row's residues into groups that differ by one at the most, and tabulate what serves all receivers. */
+/* Divide the row's residues into groups whose sizes differ by one at the most, and tabulate what all receivers share.
+   */
 #define TABLES_BEGIN REAL_ISA_NAME(bp_tables_begin)
 struct row_tables TABLES_BEGIN(const struct bp_row *row);
 

@@ -5,8 +5,8 @@
 #include "backprojection/invariant/chunk.h"
 #include "common/phasor.h"
 
-/* Of places `ahead` metres along the track, in place of these and in `leg`: where the transmitter is ahead of them when
-   its echo leaves them, and after how many seconds. */
+/* For places `ahead` metres along the track: replace `ahead` by the transmitter's place when its echo leaves them, and
+   set `leg` to the seconds until then. */
 static void legs_out(const struct bp_row *row, int count, double *restrict ahead, double *restrict leg)
 {
     const double one_c = 1 / row->medium->sound_speed, v = row->raster->speed, r2 = row->r * row->r;
@@ -52,9 +52,9 @@ static struct extent extent_of(const double *ahead, int entries)
     return extent;
 }
 
-/* Pieces that cover a row's entries, from the one nearest to the broadside outwards: as long as their distance from the
-   pings allows, and overlapping by the extent of a vector, so that each vector is inside one. `beside`: by how much a
-   receiver may be nearer along the track than the transmitter. Their count; 0 where they do not pay. */
+/* Pieces that cover a row's entries, from broadside outwards: as long as their distance from the pings allows, and
+   overlapping by the extent of a vector, so that each vector is inside one. `beside`: how much nearer along the track a
+   receiver may be than the transmitter. Returns their number; 0 where they do not pay. */
 static int pieces_cover(const struct bp_row *row, const struct extent *extent, double beside, int entries,
                         struct bp_piece *pieces)
 {
@@ -78,7 +78,7 @@ static int pieces_cover(const struct bp_row *row, const struct extent *extent, d
     return 2 * PIECE_POWERS * count <= entries ? count : 0;
 }
 
-/* Each vector of entries into a piece, and in place of the distance ahead the place in it, -1 to 1. */
+/* Assign each vector of entries to a piece, and replace the distance ahead by the place in the piece, -1 to 1. */
 static void pieces_place(const struct bp_row *row, int count, int entries)
 {
     const struct bp_row_scratch *scratch = row->scratch;
@@ -121,7 +121,7 @@ int DELAYS_PLAN(const struct bp_row *row, const struct delay_terms *terms, doubl
     return count;
 }
 
-/* The delay to a receiver that is b ahead of the place when the echo leaves it. `slow` is a constant where this is
+/* The delay to a receiver that is b m ahead of the place when the echo leaves it. `slow` is a constant where this is
    inlined. */
 INLINE double delay(bool slow, const struct delay_terms *terms, double leg, double b)
 {
@@ -145,7 +145,7 @@ void DELAYS_RECEIVER(const struct bp_row *row, const struct row_tables *tables, 
     for (int n = 0; n < tables->pieces; n++, q += PIECE_POWERS) {
         struct bp_polynomial *p = &scratch->polynomials[n];
         double c[PIECE_POWERS] = {0};
-        const double middle = q[PIECE_POWERS / 2]; /* only what differs from it is rounded by the sums */
+        const double middle = q[PIECE_POWERS / 2]; /* the sums round only the differences from it */
         for (int k = 0; k < PIECE_POWERS; k++)
             for (int m = 0; m < PIECE_POWERS; m++)
                 c[m] += (q[k] - middle) * fit->power[k][m];
@@ -156,7 +156,7 @@ void DELAYS_RECEIVER(const struct bp_row *row, const struct row_tables *tables, 
     }
 }
 
-/* The part of a whole number of cycles that is left, -1/2 to 1/2. */
+/* The phase without whole cycles, -1/2 to 1/2. */
 INLINE real fraction(double cycles)
 {
     return (real)(cycles - floor(cycles + 0.5));
@@ -204,7 +204,7 @@ INLINE void delays_of_pieces(const struct chunk *chunk)
 }
 
 /* Weights exp(j 2 pi fc tau) of a chunk's entries from their phases; 0 where the gate is. A loop of its own, so that
-   several of each one's chains are under way at once. */
+   chains of several entries run at once. */
 INLINE void phasors(const struct chunk *chunk)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;

@@ -1,7 +1,7 @@
 /* Back projection on a uniform straight track whose ping spacing is a whole number of azimuth steps: the geometry
-   repeats itself from ping to ping, so that tables of one row serve all its columns (invariant/row.h). Traces are laid
-   out with pings contiguous, some receivers at a time; each image row is summed by one thread in a fixed order. Cost: 8
-   FLOPs a pair (nearest), tables of ratio x shifts entries for each row and receiver. */
+   repeats from ping to ping, so that tables of one row serve all its columns (invariant/row.h). Traces are stored with
+   pings contiguous, some receivers at a time; one thread sums each image row in a fixed order. Cost: 8 FLOPs a pair
+   (nearest), tables of ratio x shifts entries for each row and receiver. */
 #include <math.h>
 #include <omp.h>
 #include <string.h>
@@ -39,7 +39,7 @@ static void scatter(const struct bp *bp, const void *tile, size_t pitch, size_t 
         tile, place->count);
 }
 
-/* Does any pixel meet one of `count` pings of the raster from `ping` on? Of others the slab stays zero. */
+/* Is any of `count` pings of the raster from `ping` on in a pair? The slab stays zero for others. */
 static bool tile_met(const struct bp *bp, int ping, int count)
 {
     const int receivers = bp->problem.acquisition->receivers;
@@ -190,7 +190,7 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
     size_t size = real_size(bp->problem.precision), slab = (size_t)in->receivers * in->slab.receiver_stride * size;
     for (int k = 0; k < in->patch_count; k++)
         sums_clear(bp, k);
-    if (!bp->problem.window) {        /* whose memory is zero where it is not used */
+    if (!bp->problem.window) {        /* a window's memory is zero where it is not used */
         memset(in->slab_re, 0, slab); /* the lead and the end of each row stay zero */
         memset(in->slab_im, 0, slab);
     }
@@ -216,8 +216,8 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
     stages_end(stages, "store");
 }
 
-/* A group of residues has entries up to one ping spacing outside the aperture of some; rows are known to lie inside the
-   samples as a whole by the farthest receiver and another spacing. */
+/* A group of residues has entries up to one ping spacing outside the aperture of some; a row is proved to lie inside
+   the samples by the farthest receiver and another spacing. */
 static double invariant_beside(const struct bp *bp)
 {
     const struct problem *problem = &bp->problem;

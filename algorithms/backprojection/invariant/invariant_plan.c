@@ -1,5 +1,5 @@
-/* The plan of the translation-invariant engine: the conditions under which the geometry repeats itself from ping to
-   ping, the sizes of slab and tables, and their memory. */
+/* The plan of the translation-invariant engine: the conditions for a geometry that repeats from ping to ping, the sizes
+   of slab and tables, and their memory. */
 #include "backprojection/invariant/invariant_plan.h"
 
 #include <limits.h>
@@ -11,7 +11,7 @@
 
 enum {
     SLAB_BYTES = 64 << 20, /* receivers are taken together up to this: the image is read and written for each slab */
-    READ_BYTES = 4 << 20,  /* and as long as what one row of the image reads of them stays in the shared cache */
+    READ_BYTES = 4 << 20,  /* and as long as the samples that one image row reads stay in the shared cache */
     SLAB_MOST = 128 << 20, /* one receiver's upsampled traces: beyond it their fine steps are taken in passes */
     ENTRIES_LEAST = 1024   /* entries of the tables that are made at once, where a group has fewer */
 };
@@ -21,8 +21,8 @@ static int round_up(int value, int multiple)
     return (value + multiple - 1) / multiple * multiple;
 }
 
-/* Cycles of the carrier, or samples where these are shorter: by how much ideal delays may differ from real ones. It
-   bounds the phase by 1e-6 rad. */
+/* Cycles of the carrier, or samples where these are shorter: the largest difference between ideal and real delays. It
+   bounds the phase error by 1e-6 rad. */
 static const double DRIFT_MOST = 1e-7;
 
 /* The patch on the track's raster. */
@@ -51,7 +51,7 @@ static enum status raster_make(const struct bp *bp, const struct straight_track 
     return STATUS_OK;
 }
 
-/* By how many metres a ping lies beside the ideal one that the tables hold, or its echoes beside theirs. */
+/* m: the distance of a ping from the ideal ping of the tables, or of its echoes from the ideal ones. */
 static double ping_beside(const struct acquisition *a, const struct straight_track *track, int p)
 {
     const double c = a->sound_speed, longest = fmax(fabs(a->t0[p]), fabs(a->t0[p] + (a->samples - 1) / a->fs));
@@ -67,7 +67,7 @@ static double ping_beside(const struct acquisition *a, const struct straight_tra
     return off;
 }
 
-/* By how many metres the columns of a grid leave the raster of the pings over the whole track. */
+/* m: the deviation of a grid's columns from the raster of the pings over the whole track. */
 static double columns_beside(const struct acquisition *a, const struct straight_track *track, const struct grid *grid)
 {
     double spacing = fabs(track->spacing), ratio = floor(spacing / grid->x_step + 0.5);
@@ -82,7 +82,7 @@ struct condition invariant_condition(const struct problem *problem, enum severit
 {
     const struct acquisition *a = problem->acquisition;
     struct straight_track track;
-    double off = INFINITY, step = 0; /* of the columns that lie farthest off, 0 where pings do */
+    double off = INFINITY, step = 0; /* of the columns that deviate most, 0 where pings deviate more */
     if (acquisition_is_straight(a, &track)) {
         off = 0;
         for (int p = 0; p < a->pings; p++)
@@ -164,7 +164,7 @@ void invariant_units(const struct bp *bp, struct forecast *forecast)
     forecast->units = units * bp->problem.acquisition->receivers;
 }
 
-/* The least and the largest distance between a row of the grid and the track, whose side is no matter. */
+/* The least and the largest distance between a row of the grid and the track, on either side. */
 static void row_ranges(const struct grid *grid, double r[2])
 {
     const double first = grid->r_first, last = first + (grid->r_count - 1) * grid->r_step;
@@ -213,14 +213,14 @@ static int residues_together(const struct bp *bp, double steepness)
     return (int)fmin(BP_TOGETHER, 1 + floor((BP_SPREAD - 1) / steepness));
 }
 
-/* Rows and receivers of the slab, of which a row of the image reads `read` samples at the most, and the passes that
-   keep it small however much the traces are upsampled. */
+/* Rows and receivers of the slab, and the passes that keep it small for any upsampling. A row of the image reads `read`
+   samples at most. */
 static void plan_slab(struct bp *bp, double read)
 {
     struct invariant *in = bp->state;
-    /* Vectors of columns are read that have a ping, and so up to their width less one before the first ping and behind
-       the last. Room is made for the widest vectors, so that a plan needs the same memory on every machine; rows are
-       whole ones, so that a tile of pings fills whole cache lines. */
+    /* Vectors of columns with a ping are read, and so up to their width less one before the first ping and behind the
+       last. Room is made for the widest vectors, so that a plan needs the same memory on every machine; rows are whole
+       ones, so that a tile of pings fills whole cache lines. */
     const int lead = BP_LANES_MOST * (int)sizeof(float) / (int)real_size(bp->problem.precision);
     const int ping_stride = round_up(bp->problem.acquisition->pings + 2 * lead, lead);
     int upsample = bp->table.upsample, samples = bp->shape.samples;
@@ -242,7 +242,7 @@ static void plan_slab(struct bp *bp, double read)
 }
 
 struct arena {
-    char *base; /* NULL while the size is being found */
+    char *base; /* NULL while the size is computed */
     size_t used;
 };
 
@@ -290,7 +290,7 @@ static struct bp_row_scratch scratch_take(struct arena *arena, const struct leng
                                    .weights = take(arena, entries * many, real_bytes)};
 }
 
-/* What belongs to the track and to the count of patches. */
+/* The parts for the track and for the count of patches. */
 static enum status plan_track(struct bp *bp, const struct straight_track *track)
 {
     const struct problem *problem = &bp->problem;
@@ -313,7 +313,7 @@ static enum status plan_track(struct bp *bp, const struct straight_track *track)
     return STATUS_OK;
 }
 
-/* How long pieces may be; a phase is counted from a piece's middle on, whose cycles fit 18 bits. */
+/* The greatest length of pieces; a phase counts from a piece's middle, whose cycles fit 18 bits. */
 static void pieces_plan(const struct bp *bp, struct bp_raster *raster)
 {
     const struct bp_medium *medium = &bp->medium;
@@ -324,7 +324,7 @@ static void pieces_plan(const struct bp *bp, struct bp_raster *raster)
     raster->reach = limit > 0 && mach <= BP_SLOW ? piece_reach(mach, limit * c / (2 * M_PI * frequency)) : 0;
 }
 
-/* Raster and sums of patch k; what it needs goes into the lengths. */
+/* Raster and sums of patch k; adds its needs to the lengths. */
 static enum status plan_patch(struct bp *bp, const struct straight_track *track, int k, struct lengths *lengths)
 {
     const struct grid *grid = &bp->problem.patches[k];

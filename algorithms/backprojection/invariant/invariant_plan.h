@@ -1,4 +1,4 @@
-/* What the translation-invariant engine has planned (invariant_plan.c) and executes (invariant.c). row.h has the
+/* The plan of the translation-invariant engine: invariant_plan.c makes it, invariant.c executes it. row.h has the
    picture. */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_INVARIANT_PLAN_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_INVARIANT_PLAN_H
@@ -17,7 +17,7 @@ struct invariant {
     double *offsets;         /* [receivers] m ahead of the transmitter */
     bool reversed;           /* the sonar sails towards -x: pings are taken from the last to the first */
     struct bp_slab slab;     /* step_first: of the current pass */
-    size_t slab_rows;        /* of one receiver, at the most */
+    size_t slab_rows;        /* of one receiver, at most */
     int receivers;           /* of one pass */
     int passes;              /* over the fine steps of upsampled traces, which bound the slab's size */
     void *slab_re, *slab_im; /* real [receivers][slab_rows][ping_stride] */

@@ -1,4 +1,4 @@
-/* How long a polynomial may stand for the delays of an image row (invariant/pieces.h).
+/* The greatest length of polynomials for the delays of an image row (invariant/pieces.h).
 
    The two-way path is L = D + c g, where D = sqrt(u^2 + r^2) is the way out and c g = (B b + sqrt(b^2 + (1 - B^2) r^2))
    /(1 - B^2), b = u + offset + B D, the way back (delay.h), B = v/c. Interpolation at the n Chebyshev points of [-h, h]

@@ -1,15 +1,14 @@
-/* Delays of an image row as polynomials of the distance along the track, in place of a root for each entry of the
-   tables.
+/* Delays of an image row as polynomials of the distance along the track: no root for each entry of the tables.
 
-   Delay and sample of a pair are smooth in u, by how much the ping lies ahead of the column (row.h). The row's range
-   of u is cut into pieces, each with a polynomial of degree PIECE_POWERS - 1 through exact delays at its Chebyshev
-   points. A piece is so short that the phase errs by no more than a limit, piece_half, which budget.h names. */
+   Delay and sample of a pair are smooth in u, the distance of the ping ahead of the column (row.h). The row's range of
+   u is cut into pieces, each with a polynomial of degree PIECE_POWERS - 1 through exact delays at its Chebyshev points.
+   A piece is so short (piece_half) that the phase error stays within the limit in budget.h. */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_PIECES_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_PIECES_H
 
 enum {
     PIECE_POWERS = 10, /* and exact delays of a piece */
-    PIECES_MOST = 64   /* of a row: more are not made, and each delay is evaluated */
+    PIECES_MOST = 64   /* of a row: with more, each delay is evaluated */
 };
 
 /* From values at Chebyshev points of [-1, 1] to the coefficients of the polynomial through them. */
@@ -19,9 +18,9 @@ struct piece_fit {
 };
 void piece_fit_make(struct piece_fit *fit);
 
-/* The reach of pieces, m^(1/PIECE_POWERS): one may extend piece_half to either side of its middle, if all distances
-   from it to the pings are at least `distance` m, so that its delays err by `error` m of path at the most. `mach`:
-   the sonar's speed over the sound's, below 1/4. */
+/* The reach of pieces, m^(1/PIECE_POWERS). A piece may extend piece_half to either side of its middle if all distances
+   from it to the pings are at least `distance` m. Its delays then err by at most `error` m of path. `mach`: the sonar's
+   speed over the sound's, below 1/4. */
 double piece_reach(double mach, double error);
 double piece_half(double reach, double distance);
 

@@ -8,14 +8,14 @@
 
        u = (x_first - grid_first - rho grid_step) + s spacing,   s = p - j
 
-   ahead of column n. So row, receiver, residue and the shift s alone decide on delay, sample and phase factor of a
-   pair. They are tabulated once and serve all columns of the residue:
+   ahead of column n. So delay, sample and phase factor of a pair depend on row, receiver, residue and the shift s
+   alone. They are tabulated once and serve all columns of the residue:
 
        image[rho + ratio j] += w(s) trace[sample(s)][ping j + s]   for all j with 0 <= j + s < pings
 
    For one shift this is a constant times contiguous pings: no gather, no trigonometry, 4 multiply-adds a pair. It is
-   exact but for the polynomials that stand for a row's delays (pieces.h): the same pairs, samples and weights as the
-   general engine with exact=true, in another order. With exact=true it has roots for all delays.
+   exact but for the polynomials in place of a row's delays (pieces.h): the same pairs, samples and weights as the
+   general engine with exact=true, in another order. With exact=true it evaluates all delays.
 
    PINGS BY COLUMNS. One residue with 8 columns, 5 pings, and the block of columns j = 2 to 5 in brackets. The numbers
    are the pings p = j + s that each shift brings to the columns. All pairs form a parallelogram. An aperture limit
@@ -36,12 +36,12 @@
        s =  4      4
 
    The dots are zeros of the slab. A block no wider than the lead of the slab is summed for all its shifts at once and
-   reads these zeros. Of a wider block, the first and the last region are summed for those vectors of columns only that
-   have a ping (sum_columns).
+   reads these zeros. In a wider block, the first and the last region are summed only for vectors of columns with a ping
+   (sum_columns).
 
    THE SLAB holds compressed traces of some receivers, re and im apart: [receiver][range sample][lead, pings, zeros].
-   Pings of one range sample are contiguous, which is what the sum over columns reads. Vectors may begin before ping 0
-   and end behind the last one.
+   Pings of one range sample are contiguous, as the sum over columns reads them. Vectors may begin before ping 0 and end
+   behind the last one.
 
    THE LOOPS, from outside to inside:
 
@@ -65,9 +65,9 @@
 
    Loads of the traces are the limit, half of which cross a cache line. Neighbouring residues mostly read the same
    samples: they are summed together and share the loads. Tables and sums take turns, so that both stay in the cache. Up
-   to two taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region. Of
-   Farrow branches a vector of a sample's values stays in registers for all residues of a run, whose sums are read and
-   written for each shift: Horner's rule and the phase factor are 2 branches + 2 multiply-adds between a load and a
+   to two taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region.
+   With Farrow branches, a vector of a sample's values stays in registers for all residues of a run. Their sums are read
+   and written for each shift: Horner's rule and the phase factor are 2 branches + 2 multiply-adds between a load and a
    store.
 
    THE TABLES. An entry is one shift of one residue. A group's entries are ordered by shift and then residue, and are
@@ -81,7 +81,7 @@
        of its residues needs. The weights of a residue are 0 for samples that are not its own.
      - Farrow branches: phase factors, and in place of weights the distance from the sample.
 
-   WHAT THE LOOPS RELY ON. They check nothing but BP_SPREAD; this code sees to it:
+   PRECONDITIONS OF THE LOOPS. They check only BP_SPREAD. This code ensures the others:
 
        whole ratio, even pings   invariant_condition: to 1e-7 of a cycle and of a sample, else unsupported
        zeros around the pings    plan_slab: a lead of 64 bytes, the widest vector, and as much behind the pings;
@@ -112,7 +112,7 @@
 enum { BP_BLOCK_VECTORS = 5, BP_LANES_MOST = 16 };
 
 /* At most BP_TOGETHER residues are summed together; their samples of one shift lie at most BP_SPREAD apart where a
-   value has more than two taps. Of Farrow branches, BP_TOGETHER_BRANCHES, of which those that read the same sample are
+   value has more than two taps. With Farrow branches, at most BP_TOGETHER_BRANCHES; those that read the same sample are
    summed together. */
 enum { BP_TOGETHER = 6, BP_SPREAD = 4, BP_TOGETHER_BRANCHES = 40 };
 
@@ -144,11 +144,11 @@ struct bp_raster {
     double grid_first, grid_step; /* m */
     int columns;                  /* of the grid */
     int residue_columns;          /* of one residue at the most: ceil(columns/ratio) */
-    struct pair_span shown;       /* of a residue's columns, those that are wanted: blocks without any are left out */
+    struct pair_span shown;       /* wanted columns of a residue: blocks without any are left out */
     double limit;                 /* aperture limit */
     int together; /* residues summed together at most, 2 for up to two taps, 1 for the nearest fine step */
     const struct piece_fit *fit;
-    double reach, longest; /* of pieces: piece_reach, 0: each delay is evaluated; half length in m at the most */
+    double reach, longest; /* of pieces: piece_reach, 0: each delay is evaluated; greatest half length in m */
 };
 
 static inline int raster_residues(const struct bp_raster *raster)
@@ -161,11 +161,11 @@ struct bp_row_group {
     int residue, residues; /* the first one, how many */
     int begin, end;
     int first;    /* its entries' place among the row's: by shift and then residue, padded to whole vectors */
-    int from, to; /* of these, what is inside the present receiver's record: shifts counted from `begin` */
+    int from, to; /* shifts inside the present receiver's record, counted from `begin` */
 };
 
-/* The distances ahead, in m, that share a polynomial of one receiver: from -1 to 1 the sample coordinate is sum c[m]
-   place^m, and the phase fc/fs of that plus `cycles`. */
+/* Distances ahead, in m, that share a polynomial of one receiver. For `place` from -1 to 1 the sample coordinate is sum
+   c[m] place^m, and the phase fc/fs times that plus `cycles`. */
 struct bp_piece {
     double begin, end;
 };
@@ -179,8 +179,8 @@ struct bp_polynomial {
 struct bp_row_scratch {
     struct bp_row_group *groups; /* [residues + 1], the last for its `first` */
     double *leg;                 /* [row's entries] s, from the transmitter; not where there are pieces */
-    double *ahead; /* [row's entries] m, of the transmitter from the column when the echo leaves the pixel; where there
-                      are pieces, the place in its piece, -1 to 1 */
+    double *ahead; /* [row's entries] m, of the transmitter from the column when the echo leaves the pixel; with pieces,
+                      the place in its piece, -1 to 1 */
     int *piece;    /* [row's entries] of each vector, by number of vector */
     struct bp_piece *pieces;                /* [PIECES_MOST] */
     struct bp_polynomial *polynomials;      /* [PIECES_MOST] of one receiver */
@@ -189,7 +189,7 @@ struct bp_row_scratch {
     void *gate; /* real [row's entries] 1 inside the aperture of the entry's residue, else 0 */
     int capacity;
     double *q;     /* [capacity] sample coordinate; then, with cubics, the position inside their interval */
-    int *kept;     /* [capacity] `shift` of entries that are kept, where some are not */
+    int *kept;     /* [capacity] `shift` of kept entries, where some are left out */
     int *row;      /* [capacity] the first tap's row of the slab */
     int *offset;   /* [capacity] where the first tap's value for ping `shift` lies in the receiver's slab */
     int *step;     /* [capacity] fine step or interval between two samples */

@@ -31,7 +31,7 @@ static void shift_bounds(const struct bp_raster *raster, double edge, double x, 
     const double first = (-edge - x) * one_spacing, last = (edge - x) * one_spacing;
     int low = clamp(ceil(first), *begin, *end), high = clamp(floor(last) + 1, *begin, *end);
     if (fabs(first - floor(first + 0.5)) < 1e-6 || fabs(last - floor(last + 0.5)) < 1e-6) {
-        /* so near a shift that rounding decides: as it is defined */
+        /* so near a shift that rounding decides: by the definition */
 #define INSIDE(s) inside_limit(raster, x + (s)*raster->spacing, r)
         while (low < high && !INSIDE(low))
             low++;
@@ -94,8 +94,8 @@ struct distances {
     double least, most; /* m */
 };
 
-/* Are all delays of a row among the samples that pairs read, by the least and the longest there could be? `offset`: the
-   largest distance along the track between transmitter and receiver. */
+/* Are all delays of a row among the samples that pairs read, by bounds of the least and the longest delay? `offset`:
+   the largest distance along the track between transmitter and receiver. */
 static bool inside_record(const struct bp_row *row, const struct delay_terms *terms, double offset,
                           struct distances distances)
 {
@@ -178,8 +178,8 @@ nearest_step(double q, int steps, int *sample, int *step)
     *step = next ? 0 : near;
 }
 
-/* Of a group's entries, from `first` of the chunk on, those outside the record weigh nothing, and read its nearest
-   sample; shifts before the first and after the last that has an entry inside are left out. */
+/* A group's entries, from `first` of the chunk on: those outside the record get weight 0 and read its nearest sample.
+   Shifts before the first and after the last with an entry inside are left out. */
 static void confine(const struct chunk *chunk, struct bp_row_group *group, int first)
 {
     double *restrict q = chunk->scratch->q + first;
@@ -229,9 +229,9 @@ static void keep(const struct chunk *chunk, struct bp_row_group *group, int firs
     }
 }
 
-/* Where a chunk's entries read the slab: the first tap's row, and its value for ping `shift`. What their weights are
-   made of: the fine step from the sample to the next one, or the interval, and with cubics the position inside it, in
-   place of q. With branches the distance from the sample is all that their sum needs. */
+/* Where a chunk's entries read the slab: the first tap's row, and its value for ping `shift`. Input of their weights:
+   the fine step from the sample to the next one, or the interval, and with cubics the position inside it, in place of
+   q. With branches the sum needs only the distance from the sample. */
 INLINE void tabulate(const struct chunk *chunk)
 {
     const struct bp_table *table = chunk->table;
@@ -320,7 +320,7 @@ INLINE void join_two(const struct chunk *chunk)
     }
 }
 
-/* Many taps: the samples that serve all residues of a group, and each one's weights for them. */
+/* Many taps: the samples for all residues of a group, and the weights of each residue for them. */
 INLINE void join_many(bool cubics, int taps, const struct chunk *chunk, const struct bp_row_group *group, int first)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;
@@ -344,7 +344,7 @@ INLINE void join_many(bool cubics, int taps, const struct chunk *chunk, const st
             weights += taps + BP_SPREAD;
         }
         rows[i] = taps + most - least;
-        offset[i] = least * stride + *shift; /* i <= the first of these residues' entries: it has been read */
+        offset[i] = least * stride + *shift; /* i <= the first of these residues' entries, which is read before */
         row += residues;
         step += residues;
         shift += residues;

@@ -12,8 +12,7 @@ struct bp_scattering {
     void *re, *im; /* real */
 };
 
-/* Scatter the first `count` pings of a tile. Up to the next whole vector more values are written behind them, zeros:
-   rows have that room. */
+/* Scatter the first `count` pings of a tile, and zeros behind them up to the next whole vector: rows have that room. */
 typedef void bp_scatter_function(const struct bp_scattering *scattering, const void *tile, int count);
 
 ISA_DECLARE(bp_scatter_function, bp_scatter);

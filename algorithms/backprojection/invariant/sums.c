@@ -1,5 +1,5 @@
-/* The sums of a chunk (row.h): one constant or a few times contiguous pings, vectors of columns at a time. This file is
-   compiled once for each precision and instruction set (BP_ISA names it). */
+/* The sums of a chunk (row.h): one or several constants times contiguous pings, vectors of columns at a time. This file
+   is compiled once for each precision and instruction set (BP_ISA names it). */
 #include <limits.h>
 
 #include "backprojection/invariant/chunk.h"
@@ -13,8 +13,8 @@ struct part {
     size_t stride;
 };
 
-/* Where 32 registers hold a block of all columns, an entry of two residues that read other samples costs a branch;
-   where the columns take several blocks, and the branch is mispredicted in each, it is summed by itself (sum_apart). */
+/* An entry of two residues that read different samples costs a branch if 32 registers have room for a block of all
+   columns. With several blocks, each mispredicts the branch: such an entry is summed by itself (sum_apart). */
 #define APART_INSIDE (VECTOR_BYTES == 64)
 
 /* One residue, one or two samples with complex weights, `width` vectors of columns. Real and imaginary weights have
@@ -48,8 +48,8 @@ INLINE void sum_one(int width, int taps, int stride, const struct part *part, co
     }
 }
 
-/* Two residues' values of one entry, of which `second` has other samples only where it is asked for; real and imaginary
-   parts of samples and weights. */
+/* Two residues' values of one entry; `second` has other samples only if `apart`. Real and imaginary parts of samples
+   and weights. */
 INLINE void add_two(bool apart, int width, int taps, int stride, const real *const first[2],
                     const real *const second[2], const real *const weights[2], vector_real *sums)
 {
@@ -113,8 +113,8 @@ INLINE void sum_two(int width, int taps, int stride, const struct part *part, co
 }
 
 /* Some residues, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all residues of
-   the group; a residue's weights are 0 for those that are not its own. Registers hold the block's sums of one
-   residue, not of more. */
+   the group; a residue's weights are 0 for those that are not its own. Registers have room for the block's sums of one
+   residue only. */
 INLINE void sum_taps(int residues, int width, int taps, int stride, const struct part *part, const real *sr,
                      const real *si)
 {
@@ -174,8 +174,8 @@ static int find(const int *shift, int count, int bound)
     return low;
 }
 
-/* A block of `width` vectors of columns from j on. Works on copies: else all that a chunk and its scratch point to is
-   read anew after each store of a sum. */
+/* A block of `width` vectors of columns from j on. Works on copies: else each store of a sum makes the compiler reload
+   the pointers of a chunk and its scratch. */
 INLINE void sum_block(int residues, int width, int taps, const struct chunk *shared, int j)
 {
     const struct chunk own_chunk = *shared, *chunk = &own_chunk;
@@ -268,9 +268,9 @@ struct region {
     int j, width, end;
 };
 
-/* The region that begins with shift s of a block's columns [j, last), of which some have pings. Vectors begin at whole
-   ones of the block; where it lacks pings before its first columns alone, they end with its last column: of 72 columns
-   four vectors of 16 hold the last 64. */
+/* The region that begins with shift s of a block's columns [j, last), some of which have pings. Vectors begin at whole
+   vectors of the block. If only the first columns lack pings, vectors end with its last column: of 72 columns four
+   vectors of 16 are the last 64. */
 INLINE struct region region_from(int s, int pings, int j, int last)
 {
     const int low = -s > j ? -s : j, high = pings - s < last ? pings - s : last;
@@ -284,8 +284,8 @@ INLINE struct region region_from(int s, int pings, int j, int last)
     return (struct region){begin, width, begin > j && more < fewer ? more : fewer};
 }
 
-/* All columns, in blocks as wide as each other. Where the lead is as wide as a block, a shift that has pings for some
-   of its vectors is summed for all, for the others zeros; else for those only that have some. */
+/* All columns, in blocks of equal width. If the lead is as wide as a block, a shift with pings for some of its vectors
+   is summed for all of them (zeros for the others); else only for those with pings. */
 static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 {
     const int columns = chunk->raster->residue_columns, pings = chunk->raster->pings;
@@ -317,7 +317,7 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 }
 
 #if !APART_INSIDE
-/* One entry, with one or two complex weights, onto all columns that have a ping. */
+/* Add one entry, with one or two complex weights, to all columns with a ping. */
 INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entry, const real *wr, const real *wi)
 {
     const int shift = chunk->shift[entry], offset = chunk->scratch->offset[entry];
@@ -339,8 +339,8 @@ INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entr
     }
 }
 
-/* In pairs of residues, one or two taps: each second entry whose samples are not the first one's is summed by
-   itself. */
+/* In pairs of residues, one or two taps: each second entry with samples other than the first one's is summed by itself.
+   */
 INLINE void sum_apart(const struct chunk *chunk, int taps)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;

@@ -7,7 +7,7 @@
 
 enum { PINGS_LEAST = 10 };
 
-/* What ping p brings into the spectrum of a pixel, and the sine of its angle. */
+/* The energy of ping p in the spectrum of a pixel, and the sine of its angle. */
 static double ping_weight(const struct acquisition *a, int p, struct vector pixel, double *sine)
 {
     const double u = a->tx[p].x - pixel.x, r = hypot(pixel.y - a->tx[p].y, a->tx[p].z);
@@ -16,7 +16,7 @@ static double ping_weight(const struct acquisition *a, int p, struct vector pixe
     return amplitude * amplitude * pow(1 - *sine * *sine, -1.5);
 }
 
-/* The energy that pings bring to a pixel, adding to `all`, and to `beyond` from outside `sine`. Returns how many. */
+/* Add the pings' energy at a pixel to `all`, and that from outside `sine` to `beyond`. Returns the number of pings. */
 static int pings_weigh(const struct acquisition *a, struct vector pixel, double sine, double *all, double *beyond)
 {
     int seeing = 0;
@@ -71,7 +71,7 @@ double aperture_sine(const struct problem *problem, double error)
     return high;
 }
 
-/* Of what is planned with: times the law; and over the fewest pings. */
+/* Factors of the planned error: of the law; and over the fewest pings. */
 static const double SHARE = 1.25, EDGES = 4;
 
 /* Does the aperture end where echoes are still strong? */
@@ -92,8 +92,8 @@ struct profile {
     double complex whole[PIXELS], limited[PIXELS];
 };
 
-/* The azimuth profile through a target in the middle of a patch: each pixel sums what lies within the sine of itself.
-   Of receivers, so many that what they repeat lies beyond the profile. */
+/* The azimuth profile through a target in the middle of a patch: each pixel sums the pings within its own sine. Enough
+   receivers that repetitions lie beyond the profile. */
 static void profile_make(const struct acquisition *a, const struct grid *g, double sine, struct profile *profile)
 {
     const double i = (g->r_count - 1) / 2.0, j = (g->x_count - 1) / 2.0, wavelength = a->sound_speed / a->fc;
@@ -140,7 +140,7 @@ static double profile_error(const struct problem *problem, double sine)
     return power > 0 ? unlike(both, power) : 1;
 }
 
-/* Of a problem that has a law. */
+/* For a problem with a law. */
 static double planned_error(const struct problem *problem, double sine)
 {
     int fewest;

@@ -1,4 +1,4 @@
-/* Which pixels of a line a pulse's pairs have (pairs.h). */
+/* The pixels of a line that are in pairs with a pulse (pairs.h). */
 #include "backprojection/pairs/pairs.h"
 
 #include <math.h>
@@ -58,8 +58,7 @@ static void cone_roots(const struct cone *cone, const struct pixel_line *line, d
     root[1] = foot + fmax(first, second) / step;
 }
 
-/* Add pixels [begin, end), which lie behind those there are. Only rounding can make a third span: it joins the
-   second. */
+/* Append pixels [begin, end), behind the others. Only rounding can make a third span: it joins the second. */
 static int span_add(struct pair_span spans[2], int count, int begin, int end)
 {
     if (count == 2 || (count == 1 && spans[0].end == begin)) {
@@ -76,18 +75,18 @@ static int pixel_between(double value, int least, int most)
     return !(value > least) ? least : value < most ? (int)value : most;
 }
 
-/* In pixels, far more than a root errs by: from a pixel, or from the other root, where it errs most. */
+/* Pixels, far more than the error of a root: from a pixel, or from the other root, where the error is largest. */
 static const double NEAR_PIXEL = 0.125, APART = 8;
 
-/* Pixels beside a root that is near one of them, or near the other root, are asked one by one, so that none is lost
-   where the cone meets it exactly; what lies between is all inside or all outside. */
+/* Pixels beside a root that is near one of them, or near the other root, are tested one by one, so that none is lost
+   where the cone meets it exactly. Pixels between are all inside or all outside. */
 int pair_spans(const struct acquisition *a, int ping, struct vector h, const struct pixel_line *line,
                struct pair_span spans[2])
 {
     const int n = line->count;
     const struct cone cone = {a->tx[ping], h, a->aperture_limit};
     double root[2];
-    int count = 0, next = 0; /* the first pixel that is not decided yet */
+    int count = 0, next = 0; /* the first undecided pixel */
     if (!(cone.limit < 1)) {
         spans[0] = (struct pair_span){0, n};
         return 1;
@@ -151,7 +150,7 @@ static double profile_root(const struct profile *profile, bool rising, double bo
 }
 
 /* The first pixel of [begin, end) with q > bound (rising) or q < bound (falling side: q <= bound is wanted there). The
-   pixels beside the root in closed form are asked before it is searched for. */
+   pixels beside the root in closed form are tested first, before a search. */
 static int profile_cross(const struct profile *profile, int begin, int end, bool rising, double bound, bool inclusive)
 {
     const double root = begin < end ? floor(profile_root(profile, rising, bound)) : -2;

@@ -23,8 +23,8 @@ int grid_line_count(const struct grid *grid, bool along_x);
 struct pixel_line grid_line(const struct grid *grid, bool along_x, int number);
 struct vector line_pixel(const struct pixel_line *line, int i);
 
-/* m: the distance that rounding may leave between a pixel and a transmitter in one place, given the magnitudes of their
-   coordinates. That near, the angle means nothing, and the pixel counts as inside any aperture limit. */
+/* m: the distance by rounding between a pixel and a transmitter in the same place, from the magnitudes of their
+   coordinates. Below it the angle is meaningless, and the pixel counts as inside any aperture limit. */
 static inline double apex_slack(double pixel, double transmitter)
 {
     return 4 * DBL_EPSILON * (pixel + transmitter);
@@ -41,8 +41,8 @@ int pair_spans(const struct acquisition *acquisition, int ping, struct vector no
 int record_spans(const struct acquisition *acquisition, int ping, int receiver, const struct pixel_line *line,
                  struct pair_span within, struct pair_span spans[2]);
 
-/* Fill met[pings]: false where a ping is in no pair for sure, for its aperture holds no pixel, nor that of the pings
-   beside it, or all delays are outside its records. Returns how many are met. */
+/* Fill met[pings]: false where a ping is certainly in no pair: its aperture and those of the pings beside it contain no
+   pixel, or all delays are outside its records. Returns the number of pings met. */
 int pings_met(const struct problem *problem, bool *met);
 
 /* Samples of a record, as fractions counted from its first one, both ends included. */
@@ -50,12 +50,13 @@ struct sample_span {
     double first, last;
 };
 
-/* Samples between which all delays of a problem's pairs lie for sure, and those of pixels up to `beside` m ahead of or
-   behind them; no more than the record. Pings that are not met do not count (NULL: all are); {0, 0} without any. */
+/* Samples that contain all delays of a problem's pairs, and those of pixels up to `beside` m ahead of or behind them;
+   no more than the record. Only pings that are met count (NULL: all are); {0, 0} without any. */
 struct sample_span pairs_samples(const struct problem *problem, const bool *met, double beside);
 
-/* All pairs of a problem inside its records and its aperture limit: what a back projection sums. Exact, and the same on
-   every machine. Grids may be turned, which all else here does not ask (turned.h). NAN without memory to turn them. */
+/* The number of pairs of a problem inside its records and its aperture limit: the pairs that back projection sums.
+   Exact, and the same on every machine. Grids may be turned (turned.h), for this function alone. NAN without memory to
+   turn them. */
 double pairs_count(const struct problem *problem);
 
 /* Pixels of all patches. */

@@ -1,4 +1,4 @@
-/* What all pairs of a problem are together: their number, and the pings and samples that they read (pairs.h). */
+/* All pairs of a problem: their number, and the pings and samples that they read (pairs.h). */
 #include "backprojection/pairs/pairs.h"
 
 #include <math.h>
@@ -18,7 +18,8 @@ static double receivers_apart(const struct acquisition *a, int ping)
 }
 
 /* Bounds of the delays between `line` and a ping, by the nearest and the furthest pixel: a path is twice the
-   transmitter's distance, but for what the receiver is away from the transmitter, `apart` m and the way since. */
+   transmitter's distance, up to the receiver's distance from the transmitter: `apart` m, and its motion since emission.
+   */
 struct delay_bounds {
     double least, most; /* s */
 };
@@ -45,7 +46,7 @@ static bool record_reached(const struct acquisition *a, int ping, struct delay_b
     return !(delays.least > last + slack || delays.most < first - slack);
 }
 
-/* Do all lie inside, for sure? */
+/* Do all certainly lie inside? */
 static bool record_holds(const struct acquisition *a, int ping, struct delay_bounds delays)
 {
     const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs;
@@ -63,7 +64,7 @@ static int common_divisor(int a, int b)
     return a;
 }
 
-/* A step through `count` lines, in golden section, that comes to each of them once, and soon near any. */
+/* A step through `count` lines, by the golden section, that visits each line once, and soon comes near any. */
 static int stride_of(int count)
 {
     int stride = (int)(0.618 * count) + 1;
@@ -72,7 +73,8 @@ static int stride_of(int count)
     return stride;
 }
 
-/* Each line once, the last one first: along x the aperture widens with the range, along r pings see few of them. */
+/* Each line once, the last one first: along x the aperture widens with the range, along r a ping sees only some lines.
+   */
 static bool ping_met(const struct problem *problem, int ping)
 {
     const struct acquisition *a = problem->acquisition;
@@ -93,7 +95,7 @@ static bool ping_met(const struct problem *problem, int ping)
     return false;
 }
 
-/* A ping beside one that is met counts as met: engines round apertures in different ways. */
+/* A ping beside one that is met also counts as met: engines round apertures in different ways. */
 int pings_met(const struct problem *problem, bool *met)
 {
     const int pings = problem->acquisition->pings;
@@ -110,7 +112,7 @@ int pings_met(const struct problem *problem, bool *met)
     return count;
 }
 
-/* Where a grid's pixels are, seen from a ping: as far as they are along its normal, and beside it. */
+/* The extent of a grid's pixels seen from a ping: along its normal, and beside it. */
 struct seen {
     double along, beside; /* m, the most */
 };
@@ -128,8 +130,8 @@ static struct seen grid_seen(const struct grid *grid, struct vector tx, struct v
     return seen;
 }
 
-/* m: the least distance of a grid from `at`, which may be `away` from there along each axis, pixels `beside` m off
-   among them. */
+/* m: the least distance of a grid, with pixels up to `beside` m off, from `at`, which may be displaced by `away` along
+   each axis. */
 static double grid_nearest(const struct grid *grid, struct vector at, struct vector away, double beside)
 {
     const double last_x = grid->x_first + (grid->x_count - 1) * grid->x_step;
@@ -175,7 +177,7 @@ struct sample_span pairs_samples(const struct problem *problem, const bool *met,
             const struct delay_bounds delays = ping_delays(a, p, &problem->patches[k], beside);
             if (!record_reached(a, p, delays))
                 continue;
-            const double slack = 1 + 1e-9 * fabs(a->t0[p]) * a->fs; /* samples: far more than anything rounds */
+            const double slack = 1 + 1e-9 * fabs(a->t0[p]) * a->fs; /* samples: far more than rounding */
             first = fmin(first, (delays.least - a->t0[p]) * a->fs * (1 - 1e-9) - slack);
             last = fmax(last, (delays.most - a->t0[p]) * a->fs * (1 + 1e-9) + slack);
         }
@@ -191,7 +193,7 @@ static struct pixel_line part_of(const struct pixel_line *line, struct pair_span
     return (struct pixel_line){first.x, first.y, line->x_step, line->r_step, span.end - span.begin};
 }
 
-/* Pairs of a ping along a line. Most apertures lie inside the records as a whole, which spares the receivers. */
+/* Pairs of a ping along a line. Most apertures lie inside the records as a whole: then receivers need no test. */
 static double line_pairs(const struct acquisition *a, int ping, double apart, const struct pixel_line *line)
 {
     struct pair_span aperture[2], record[2];
@@ -214,8 +216,8 @@ static double line_pairs(const struct acquisition *a, int ping, double apart, co
     return pairs;
 }
 
-/* The time to count pairs line by line, of a line's aperture as the unit: of rows delays change little, so that few of
-   them pass an end of the records; but there may be fewer columns. */
+/* The time to count pairs line by line, in units of a line's aperture. Delays change little along rows, so that rarely
+   one passes an end of the records; but there may be fewer columns. */
 static double count_time(const struct acquisition *a, const struct grid *grid, bool along_x)
 {
     enum { TRIED = 32 };

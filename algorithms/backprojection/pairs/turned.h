@@ -1,5 +1,5 @@
-/* A problem whose grids are turned, seen from the grids' axes: their pixels then lie in rows and columns along x and r,
-   and all delays and angles stay what they are. */
+/* A problem with turned grids, in the grids' axes: their pixels then lie in rows and columns along x and r, and all
+   delays and angles stay the same. */
 #ifndef SASBENCH_BACKPROJECTION_PAIRS_TURNED_H
 #define SASBENCH_BACKPROJECTION_PAIRS_TURNED_H
 
@@ -13,7 +13,7 @@ struct turned_problem {
 
 /* Fill *turned and let problem->acquisition and problem->patches point to it; where no grid is turned, change nothing.
    *bytes (may be NULL) grows by what was allocated. Errors: STATUS_UNSUPPORTED where patches are turned by different
-   angles, STATUS_FAILED without memory; *turned is then to be freed all the same. */
+   angles, STATUS_FAILED without memory. Free *turned after an error, too. */
 enum status problem_turn_back(struct problem *problem, struct turned_problem *turned, double *bytes);
 void turned_free(struct turned_problem *turned);
 
