@@ -74,7 +74,7 @@ enum status bp_method_forecast(const struct problem *problem, const void *method
                                struct forecast *forecast);
 enum status bp_method_cost(const struct problem *problem, const void *method, const void *options,
                            struct forecast *forecast);
-/* conditions_sampled and `invariance`, which refuses where the invariant engine is asked for. */
+/* conditions_sampled and `invariance`, which refuses with engine=invariant. */
 int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                          int room);
 

@@ -1,4 +1,4 @@
-/* What bp.c and its two engines share. */
+/* Shared by bp.c and its two engines. */
 #ifndef SASBENCH_BACKPROJECTION_BP_ENGINE_H
 #define SASBENCH_BACKPROJECTION_BP_ENGINE_H
 

@@ -3,7 +3,7 @@
 
    `phase_limit` L (rad, 1e-4 by default) bounds the error by approximated delays. All errors of the fast path:
 
-   share           what errs, and why by no more                                                used in
+   share           source and bound of the error                                                used in
 
    L lowered       A delay may err by a quarter of the finest step between positions at most:   bp.c, choose_engine
                    L/(2 pi fc) s times `finest` steps a second. So L <= (pi/2) fc/finest.

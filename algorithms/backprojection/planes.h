@@ -20,8 +20,8 @@ struct planes {
     void (*convolve)(const void *x, const double *weights, int taps, size_t count, bool add, void *y);
     /* Complex values [count] into a block of `block` real parts and as many imaginary ones; 0 behind the last value. */
     void (*part)(const void *values, size_t count, size_t block, void *to);
-    /* The same into `blocks` blocks, which hold values from block/2 to block/2 on, each block `step` values behind the
-       one before. */
+    /* The same into `blocks` blocks, each beginning block/2 values after the one before, and stored `step` values
+       behind it. */
     void (*part_blocks)(const void *values, size_t count, size_t blocks, size_t block, size_t step, void *to);
 };
 

@@ -26,7 +26,8 @@ enum { BP_STEPS_MOST = 4096 };   /* between two samples: times 19 bits of fracti
 struct bp_table {
     enum bp_reading reading;
     int upsample, steps, taps, first, guard;
-    int origin;          /* where a row holds the record's sample 0: guard, less what the row leaves out before */
+    int origin;          /* place of the record's sample 0 in a row: guard, less the samples that the row leaves out
+                            before */
     int branches;        /* values of each place of a record: `taps` if BP_BRANCHES, else 1 */
     double shift;        /* branches: they are read at floor(place + shift), u = place + shift - 1/2 from there */
     bool preemphasis;    /* of the records (struct traces_form) */

@@ -1,4 +1,4 @@
-/* Which samples of the records an image's pairs read, and the rows that hold them (traces.h). */
+/* The samples of the records that an image's pairs read, and their rows (traces.h). */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -26,8 +26,8 @@ struct traces_form bp_records_form(struct bp *bp)
                                 .count = last - first + 1};
 }
 
-/* With AVX-512, too, 32 bytes at a time: values lie anywhere, and each store of 64 bytes would touch two cache lines.
-   */
+/* With AVX-512, too, 32 bytes at a time: values lie anywhere, and each store of 64 bytes would touch two cache
+   lines. */
 static const struct planes *const planes[][2] = {
     [ISA_BASELINE] = {&planes_float_baseline, &planes_double_baseline},
 #ifdef SASBENCH_X86_64

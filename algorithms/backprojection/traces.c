@@ -25,7 +25,7 @@ struct traces {
     real *gains;
     const struct planes *planes;
     struct farrow_taps *taps; /* of branches from 2 on, where there are some */
-    /* Of each thread: [2 + upsample][shape.pitch], what is transformed, a spectrum, a branch; and where branches > 1
+    /* Of each thread: [2 + upsample][shape.pitch], input of the transform, a spectrum, a branch; and where branches > 1
        [2][wide], the first two with neighbours, in order. */
     complex_real *scratch;
     size_t wide, each; /* complex values: of a branch with neighbours; of a thread, whole cache lines */

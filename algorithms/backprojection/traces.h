@@ -1,4 +1,4 @@
-/* Records as back projection reads them: range compressed, upsampled by zero padding if asked, with guard samples. */
+/* Records for back projection: range compressed, optionally upsampled by zero padding, with guard samples. */
 #ifndef SASBENCH_BACKPROJECTION_TRACES_H
 #define SASBENCH_BACKPROJECTION_TRACES_H
 
@@ -40,7 +40,7 @@ struct traces_shape {
     int period;     /* L: of the transformed signal, >= samples + pulse - 1 if raw; its sample 0 is `from` */
     size_t pitch;   /* from one spectrum or plane to the next, complex values: whole cache lines; 0: none is made */
     double flops;   /* for one record: 5 N log2 N an FFT, 6 a complex product, 2 a real one */
-    double bytes;   /* held with one thread */
+    double bytes;   /* memory with one thread */
 };
 
 /* Of each precision, whose values records and rows have. */
@@ -49,8 +49,8 @@ struct traces_build {
     int (*period)(const struct acquisition *acquisition, const struct traces_form *form);
     /* `flops` of the shape without a plan, in two parts: of transforms and products, and *sums over neighbours. */
     double (*flops)(const struct acquisition *acquisition, const struct traces_form *form, double *sums);
-    /* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when
-       a row is too long to index. *traces is NULL then. */
+    /* `threads`: number of threads that may call fill at the same time. Errors: STATUS_FAILED without memory,
+       STATUS_UNSUPPORTED when a row is too long to index. *traces is NULL then. */
     enum status (*plan)(const struct acquisition *acquisition, const struct traces_form *form, int threads,
                         struct traces_shape *shape, struct traces **traces);
     /* Turn one record, complex [the acquisition's samples], into a row; `thread` < threads names the scratch to use. */

@@ -8,7 +8,7 @@
 
 enum { FIT_DEGREE = 5 };
 
-/* Chebyshev's `count` nodes in [-1, 1], and what takes values at them to coefficients, lowest power first:
+/* Chebyshev's `count` nodes in [-1, 1], and the matrix from values at them to coefficients, lowest power first:
    c[power] = sum over n of powers[power][n] value[n]. */
 void fit_nodes_fill(int count, double nodes[count], double powers[count][count]);
 

@@ -34,8 +34,8 @@ struct store {
 void *store_take(struct store *store, size_t count, size_t size, double share);
 /* Memory at a cache line as it comes, by memory_aligned; counted to the byte. NULL without. */
 void *store_room(struct store *store, size_t count, size_t size, double share);
-/* Add an object with its release function; NULL: its making failed. Returns the object, NULL where it cannot be kept.
-   */
+/* Add an object with its release function; NULL: its making failed. Returns the object, NULL where it cannot be
+   kept. */
 void *store_keep(struct store *store, void *thing, void (*release)(void *thing));
 /* Release all, the last one first. */
 void store_release(struct store *store);

@@ -12,7 +12,7 @@ struct pulse_band {
 };
 
 /* Of raw echoes: the replica's band but for 4e-6 of the compressed energy. Of compressed echoes: twice the bandwidth,
-   since what was compressed elsewhere may have flanks, and at least 32 bins of the record, whose own ends are in it.
+   since echoes compressed elsewhere may have flanks, and at least 32 bins of the record, which its ends smear over.
    Errors: STATUS_FAILED without memory. */
 enum status pulse_band_find(const struct acquisition *acquisition, int transform_length, struct pulse_band *band);
 

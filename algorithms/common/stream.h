@@ -12,9 +12,9 @@
 #include <emmintrin.h>
 #endif
 
-enum { STREAM_BYTES = 16 }; /* of one store; what is written begins at a multiple of them */
+enum { STREAM_BYTES = 16 }; /* of one store; arrays written begin at a multiple of it */
 
-/* Whether an array is larger than what caches hold until it is read again. */
+/* Is an array too large to stay in the caches until it is read again? */
 static inline bool stream_pays(double bytes)
 {
     return bytes > 16e6;

@@ -33,8 +33,7 @@ struct acquisition {
     struct vector *velocity;     /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
     double pri;                  /* s: from each ping to the next; 0 = not given */
     double tx_length, rx_length; /* m: element lengths along the track; 0 = not given */
-    double echo_sine;            /* the echoes come from |sin theta_t| <= this; 0 = not given, INFINITY = from anywhere
-                                    */
+    double echo_sine;            /* echoes come from |sin theta_t| <= this; 0 = not given, INFINITY = anywhere */
     double echo_squint;          /* rad: the beam's axis, from which theta_t counts, ahead of broadside (r > 0) */
     bool echo_tapers;            /* and their amplitude falls as both elements' sinc does */
     bool noisy;                  /* the samples contain, or may contain, noise, which comes from anywhere */

@@ -1,5 +1,5 @@
-/* Conditions for an algorithm to image a scene correctly: by name, each with its value and its limit, before any work.
-   */
+/* Conditions for an algorithm to image a scene correctly: by name, each with its value and its limit, before any
+   work. */
 #ifndef SASBENCH_CONTRACT_CONDITION_H
 #define SASBENCH_CONTRACT_CONDITION_H
 
@@ -62,8 +62,8 @@ enum { CONDITIONS_SCENE = 10 };
    records. All of them warn. Without patches: units and the conditions of the pings alone. */
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE]);
 
-/* Of a straight track, `spacing` m from ping to ping: the sampling of the azimuth band; with several receivers, ghosts.
-   */
+/* Of a straight track, `spacing` m from ping to ping: the sampling of the azimuth band; with several receivers,
+   ghosts. */
 struct condition condition_doppler(const struct problem *problem, double spacing);
 /* If the echoes' beam is not given, let the cure be to give it. */
 void condition_beam_named(const struct acquisition *acquisition, struct condition *condition);

@@ -20,14 +20,14 @@ static const double CUT_MOST = 0.05;      /* of a place's echoes, before it coun
 
 struct survey {
     double places, unmet; /* pixels, by the lattice */
-    double unseen;        /* pixels outside of the beam of every ping, where it is known */
+    double unseen;        /* pixels outside of the beam of every ping, where it is given */
     double cut;           /* pixels met whose echoes from inside the beam are partly outside the records */
     int patches_unmet;
     struct steps {
         double worst; /* the step over the resolution at the place where that is largest */
         double most;  /* m: the step that would be as large as the resolution there */
     } x, r;
-    double nearest, farthest; /* m: the ranges that the records hold */
+    double nearest, farthest; /* m: the ranges within the records */
 };
 
 /* Spread of the wavenumbers F dtau/dx' and F dtau/dr' (1/m) of the echoes of one place, x' and r' the image's axes. */

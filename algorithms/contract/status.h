@@ -5,7 +5,7 @@
 enum status {
     STATUS_OK = 0,
     STATUS_FAILED = 1,     /* a run failed: out of memory, a file could not be written */
-    STATUS_INVALID = 2,    /* bad usage or bad input: the message names place, value and what is accepted */
+    STATUS_INVALID = 2,    /* bad usage or bad input: the message has the place, the value and the accepted values */
     STATUS_UNSUPPORTED = 3 /* legal input that this algorithm cannot image: the message is the reason */
 };
 

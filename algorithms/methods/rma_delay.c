@@ -2,9 +2,9 @@
    echo is delayed, by range, to the echo of a monostatic sonar at broadside. The remaining phase has low rank over the
    receivers and is corrected at each azimuth wavenumber (range_migration/delay_compensation.h).
 
-   Cost: a receiver, wavenumber and sample 6 + 4 terms FLOPs, whatever the depth of the swath. Error: that of the exact
-   spectrum and that of the terms, 1e-3 from 57 m on. It grows with (array/range)^2, the square of the beam, and B/fc.
-   */
+   Cost: 6 + 4 terms FLOPs a receiver, wavenumber and sample, for any depth of the swath. Error: that of the exact
+   spectrum and that of the terms, 1e-3 from 57 m on. It grows with (array/range)^2, the square of the beam, and
+   B/fc. */
 #include "range_migration/rma.h"
 
 static const struct param params[] = {

@@ -1,5 +1,6 @@
-/* Range migration after phase-centre approximation (LBF21 Eq. (6)): each pair stands for a monostatic sonar half-way
-   between its transmitter at emission and its receiver at reception, corrected by the delay of the target at broadside:
+/* Range migration after phase-centre approximation (LBF21 Eq. (6)): each pair is replaced by a monostatic sonar
+   half-way between its transmitter at emission and its receiver at reception, corrected by the delay of the target at
+   broadside:
 
        -phi = 2 pi nu (-d/2 - r v/c) + 4 pi r S/c + pi F (d + 2 v r/c)^2/(2 c r)
 

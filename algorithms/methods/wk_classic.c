@@ -2,8 +2,8 @@
    beam's, and each cell (Kx, K_R) takes the alias nearest to the centroid K_R sin theta. SQ18 improves upon this.
 
    unfold sets their extent, which changes the cost and not the image:
-       stuff      zeros between the pings, until the band about Kx = 0 holds all: 7 times the pings at 20 degrees
-       baseband   the carrier's centroid taken off first, then zeros: twice
+       stuff      zeros between the pings, until the band about Kx = 0 contains all: 7 times the pings at 20 degrees
+       baseband   the carrier's centroid removed first, then zeros: twice
        support    only the wavenumbers in which the beam has cells: 1.4 times
 
    Error: that of the method of stationary phase, and of the Stolt interpolation, 2e-4 with 8 taps. */

@@ -9,8 +9,8 @@
 
 enum { PAIR = 2, SPAN = RMA_SPAN };
 
-/* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor whole turns
-   taken off. */
+/* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor the removal of
+   whole turns. */
 static void rotors(const double *poly, const double *restrict y, int n, real *restrict re, real *restrict im)
 {
     const double p0 = poly[0], p1 = poly[1], p2 = poly[2], p3 = poly[3], p4 = poly[4], p5 = poly[5];
@@ -38,8 +38,8 @@ struct rows {
 };
 
 /* The group's receivers times their corrections at bins [b, b + pair VECTOR): stored row by row, or added up into one
-   row, or both (what is NULL is left out). `pair` is a constant where this is inlined: recurrences side by side hide
-   each other's latency. */
+   row, or both (NULL: left out). `pair` is a constant where this is inlined: recurrences side by side hide each other's
+   latency. */
 static inline __attribute__((always_inline)) void vectors_apply(struct rows in, int count, int b, int pair,
                                                                 real rotor[restrict 6][SPAN], struct rows stored,
                                                                 real *sum)
@@ -155,7 +155,7 @@ static void apply_libm(const struct workspace *w, double r, double less, int k, 
         }
 }
 
-/* Corrections at range r less those at `less` (0: nothing is taken off); `ramps` are their phases. */
+/* Corrections at range r minus those at `less` (0: none is subtracted); `ramps` are their phases. */
 struct correction {
     const struct rma_ramp *ramps;
     double r, less; /* m */
@@ -207,7 +207,7 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
         const int n = swath->row - k < SPAN ? swath->row - k : SPAN;
         const struct rows in = {data + 2 * k, row}, none = {NULL, 0};
         real *out = sums + 2 * k, *own = out + (size_t)reference * block;
-        /* The reference's own block has no differential left: its sum, or its rows, come with the bulk. */
+        /* The reference block has no differential: its sum, or its rows, come with the bulk. */
         struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};
         if (!add)
             converted = (struct rows){own, row};

@@ -6,7 +6,7 @@
 #include "common/stream.h"
 #include "range_migration/column.h"
 
-enum { RUN = 64 }; /* samples that a block takes or leaves together: places rise or fall along them */
+enum { RUN = 64 }; /* samples that a block uses or skips together: places rise or fall along them */
 
 /* Bins that are evanescent, and those that only fill the last vector, read zero. */
 static void mask(const struct workspace *w, real *row)
@@ -16,8 +16,8 @@ static void mask(const struct workspace *w, real *row)
         row[2 * (k / LANES * LANES) + k % LANES] = row[2 * (k / LANES * LANES) + k % LANES + LANES] = 0;
 }
 
-/* Where the samples from `centre` on lie: the block's number at its centre, fractions between; what lies beyond the
-   swath's blocks belongs to the nearest. */
+/* Places of the samples from `centre` on: the block's number at its centre, fractions between; beyond the swath's
+   blocks, the nearest. */
 static void places(const struct workspace *w, real *restrict place)
 {
     const struct rma *rma = w->rma;
@@ -37,13 +37,12 @@ static void places(const struct workspace *w, real *restrict place)
     }
 }
 
-/* Where a block counts, by place, and with which weight: a polynomial in the way from its centre, lowest power
-   first. */
+/* A block's extent, by place, and its weight: a polynomial in the distance from its centre, lowest power first. */
 struct piece {
     real from, to, weight[RMA_NODES];
 };
 
-/* Blocks that blend: Lagrange's cubic through the nearest four, two to either side but at the ends of the swath. */
+/* Blocks that blend: Lagrange's cubic through the nearest four, two to either side except at the ends of the swath. */
 static int block_pieces(const struct rma *rma, int block, struct piece *pieces)
 {
     int count = 0;
@@ -102,7 +101,7 @@ static void interleave(const real *restrict row, int begin, int end, real *restr
     }
 }
 
-/* Range IFFT of a row of spectra, and what belongs to the block added to the cut; without places all of it. */
+/* Range IFFT of a row of spectra, added to the cut with the block's weight; without places all of it. */
 static void add_block(const struct workspace *w, const real *row, int block, const real *place, real *cut)
 {
     const struct rma_swath *swath = w->swath;
@@ -301,7 +300,7 @@ static void tile_store(const struct workspace *w, const real *stored, size_t str
             for (size_t n = 0; n < RMA_TILE; n += 2)
                 stream_halves(out + 2 * n, from + n * stride, from + (n + 1) * stride);
         else if (count == RMA_TILE)               /* the usual case, of constant length */
-            for (size_t n = 0; n < RMA_TILE; n++) /* moved as one: else the compiler takes real from imaginary parts */
+            for (size_t n = 0; n < RMA_TILE; n++) /* moved as one: else the compiler splits real and imaginary parts */
                 memcpy(out + 2 * n, from + n * stride, 2 * sizeof *out);
         else
             for (size_t n = 0; n < count; n++)

@@ -3,11 +3,11 @@
        sum over receivers and pings of  a sinc(B dtau) exp(j 2 pi fc dtau),
 
    dtau the difference of the delays of pixel and target, a the beam's amplitude at the target. The pings are those that
-   see the target, and that a transform images at the target (else the condition doppler says so) but not at the pixel,
-   where their wavenumber lies beyond the sampled band |fc dtau/du - centroid| <= M/(2 spacing) or beyond the element's
-   first null; or the other way round, those that the aperture limit keeps from back projection alone. In range a ghost
-   is as narrow as the pulse: on each of some columns of a patch, the rows are found where a ping's delay is the
-   target's, and its energy is summed over those. The target's own energy is that of a response as wide as 1/band in
+   see the target, and that a transform images at the target (else the condition doppler is not met) but not at the
+   pixel, where their wavenumber lies beyond the sampled band |fc dtau/du - centroid| <= M/(2 spacing) or beyond the
+   element's first null; or the reverse: those that the aperture limit excludes from back projection alone. In range a
+   ghost is as narrow as the pulse: on some columns of a patch, the rows are found where a ping's delay is the target's,
+   and the ghost's energy is summed over these. The target's own energy is that of a response as wide as 1/band in
    azimuth and c/2B in range. */
 #include "range_migration/rma_conditions.h"
 
@@ -22,7 +22,7 @@ enum {
     ITERATIONS = 4 /* of Newton's method for the row of a delay */
 };
 static const double LIMIT = 0.1; /* as that of the predicted error */
-static const double BESIDE = 2;  /* range cells beside a ghost's rows that hold the rest of its pulse */
+static const double BESIDE = 2;  /* range cells beside a ghost's rows with the rest of its pulse */
 
 struct ghosts {
     const struct problem *problem;
@@ -55,7 +55,7 @@ static bool is_imaged(const struct ghosts *ghosts, int p, struct vector point)
            && sine_at(ghosts, p, point) <= ghosts->widest;
 }
 
-/* A pair that either back projection or a transform leaves out of a pixel, not both. */
+/* A pair that only one of back projection and transform leaves out of a pixel. */
 static bool makes_ghosts(const struct ghosts *ghosts, int p, struct vector target, struct vector pixel)
 {
     const bool summed = sine_at(ghosts, p, pixel) <= ghosts->acquisition->aperture_limit;
@@ -190,7 +190,7 @@ struct shares {
     double own, others; /* ghosts of targets in the same patch, and in the others */
 };
 
-/* Of the k-th of `count` that stand for all patches; zero where no ping sees its targets. */
+/* Of the k-th of `count` patches that represent all; zero where no ping sees its targets. */
 static struct shares patch_ghosts(const struct ghosts *ghosts, int k, int count)
 {
     const struct problem *problem = ghosts->problem;

@@ -1,19 +1,19 @@
 /* Prediction of an image's error (rma_conditions.h).
 
    Back projection multiplies the echo of receiver m, u metres ahead of the pixel, by exp(j 2 pi F tau_m(u)). Range
-   migration puts in its place (rma.h)
+   migration replaces this factor (rma.h) by
 
        h_m(u) = integral over |nu| <= M/(2 spacing) of  w(F, nu) exp(-j (phi_m(F, nu) + 2 pi nu u)),
 
-   whose relative error e_m(u) = h_m(u) exp(-j 2 pi F tau_m(u)) - 1 holds all that goes wrong in azimuth: wavenumbers
-   that the receivers do not sample, the ripple where they end, what stationary phase drops, the amplitude of a
+   whose relative error e_m(u) = h_m(u) exp(-j 2 pi F tau_m(u)) - 1 contains all errors in azimuth: wavenumbers that the
+   receivers do not sample, the ripple where they end, the terms neglected by stationary phase, the amplitude of a
    monostatic sonar, the formula's own phase. An FFT over nu gives e_m for all u at once. The slice through a target is
 
        sum over pings and receivers of  a sinc(B dtau) exp(j 2 pi fc dtau),
 
    dtau the difference of the delays of pixel and target and a the beam's amplitude; its error is the same sum with e_m.
-   Energies are summed over the slices of some targets, and errors over some frequencies. Few of many pings and
-   receivers stand for all. */
+   Energies are summed over the slices of some targets, and errors over some frequencies. A small number of pings and
+   receivers represents all. */
 #include "range_migration/rma_conditions.h"
 
 #include <complex.h>
@@ -28,21 +28,21 @@
 enum {
     TARGETS = 3,      /* on a row */
     COLUMNS = 17,     /* of a slice: evenly over the patch, and as many near the target */
-    PINGS = 512,      /* that are summed, at most: fewer than see a target alias where the beam is wide */
+    PINGS = 512,      /* that are summed, at most: with a wide beam, fewer than see a target alias */
     RECEIVERS = 12,   /* that are summed, at most */
-    TABLES = 5,       /* receivers whose errors are tabulated: each stands for those nearest to it */
+    TABLES = 5,       /* receivers whose errors are tabulated: each represents those nearest to it */
     FREQUENCIES = 3,  /* of the band: Gauss and Legendre's */
     FINER = 3,        /* places of a table for each independent one */
     ROWS = 8,         /* of a patch, at most */
-    LONGEST = 1 << 14 /* wavenumbers; places that would take more are left out */
+    LONGEST = 1 << 14 /* wavenumbers; places that need more are left out */
 };
 static const double abscissas[FREQUENCIES] = {-0.7745966692414834, 0, 0.7745966692414834};
 static const double weights[FREQUENCIES] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 static const double FRESNEL_ZONES = 6; /* beside the places asked for, over which the kernel tapers */
 static const double SPARE = 1.1;       /* of the tables' period, so that fading ends do not overlap */
-static const double NEAR = 4;          /* resolutions: what is near a target */
-static const double DEEP = 0.05;       /* of their range: patches whose first and last row are looked at both */
-static const double APART = 1.4;       /* ratio of two rows' ranges, beyond which one between them is looked at, too */
+static const double NEAR = 4;          /* resolutions: columns near a target */
+static const double DEEP = 0.05;       /* of their range: deeper patches use both their first and last row */
+static const double APART = 1.4;       /* ratio of two rows' ranges, beyond which one between them is used, too */
 
 /* Errors e of the kernel at one row, at places `step` apart. */
 struct kernel {
@@ -64,20 +64,20 @@ static double offset_of(const struct rma_view *view, int receiver)
     return view->problem->acquisition->rx[receiver].x - view->problem->acquisition->tx[0].x;
 }
 
-/* The k-th of `count` that stand for all receivers. */
+/* The k-th of `count` receivers that represent all. */
 static int receiver_of(const struct rma_view *view, int k, int count)
 {
     return count > 1 ? (int)((long long)k * (view->problem->acquisition->receivers - 1) / (count - 1)) : 0;
 }
 
-/* Share of the kernel that is kept whose stationary point is u ahead of the pixel. */
+/* Kept share of the kernel with its stationary point u ahead of the pixel. */
 static double taper(const struct kernel *kernel, double u)
 {
     double beyond = (fabs(u - kernel->axis) - kernel->reach) / kernel->margin;
     return beyond <= 0.5 ? 1 : beyond < 1 ? 0.5 - 0.5 * cos(2 * M_PI * beyond) : 0;
 }
 
-/* Does the method focus what is seen from a place? */
+/* Does the method focus echoes seen from a place? */
 static bool is_focused(const struct kernel *kernel, double place)
 {
     const struct rma_view *view = kernel->view;
@@ -87,7 +87,7 @@ static bool is_focused(const struct kernel *kernel, double place)
     return fabs(place * cos(squint) + r * sin(squint)) <= view->bounds.sine * hypot(place, r);
 }
 
-/* h of a receiver at offset d and one frequency, less the centroid's own turns. */
+/* h of a receiver at offset d and one frequency, without the centroid's own turns. */
 static void kernel_transform(const struct kernel *kernel, double d, double frequency, double complex *wave)
 {
     const struct rma_view *view = kernel->view;
@@ -116,7 +116,7 @@ static double complex *table_at(const struct kernel *kernel, int table, int n)
     return kernel->error + (size_t)(table * FREQUENCIES + n) * (size_t)kernel->length;
 }
 
-/* e of a table at all frequencies: those beside the carrier turn by as much more and less. */
+/* e of a table at all frequencies: the two beside the carrier turn by equal amounts more and less. */
 static void table_fill(const struct kernel *kernel, int table)
 {
     const struct acquisition *a = kernel->view->problem->acquisition;
@@ -183,7 +183,7 @@ static bool kernel_make(const struct rma_view *view, double r, double reach, str
     const double c = a->sound_speed, lowest = a->fc - a->bandwidth / 2, cosine = cos(a->echo_squint);
     const double margin = FRESNEL_ZONES * sqrt(c / lowest * r / cosine / 2) / cosine;
     double far =
-        reach + margin + view->bounds.aside; /* the angle to there, and what the speed adds, bound the wavenumbers */
+        reach + margin + view->bounds.aside; /* the angle to there, and the speed's part, bound the wavenumbers */
     *kernel = (struct kernel){.view = view, .r = r, .reach = reach, .margin = margin};
     if (a->echo_squint != 0) {
         kernel->axis = -r * tan(a->echo_squint);
@@ -225,7 +225,7 @@ struct energies {
     double image, error;
 };
 
-/* A target, and the pings that stand for those that see it. */
+/* A target, and pings that represent those that see it. */
 struct sight {
     double x;                /* m */
     int first, count, every; /* pings */
@@ -240,7 +240,7 @@ static void pixel_add(const struct kernel *kernel, const struct sight *target, d
     double complex image = 0, errors[FREQUENCIES] = {0};
     for (int p = target->first; p < target->first + target->count; p += target->every) {
         double u = a->tx[p].x - target->x, at = a->tx[p].x - x, seen = condition_amplitude(a, kernel->r, u);
-        /* What back projection leaves out, range migration images all the same: its whole kernel is error. */
+        /* Range migration also images pairs that back projection leaves out: there its whole kernel is error. */
         bool summed = !(fabs(at * cos(a->echo_squint) + kernel->r * sin(a->echo_squint))
                         > a->aperture_limit * hypot(at, kernel->r));
         for (int k = 0; k < receivers && seen != 0; k++) {
@@ -305,7 +305,7 @@ static struct grid row_of(const struct grid *patch, double i)
                          .r_count = 1};
 }
 
-/* How far off the axis pings see a row: by the beam, or by where pings and columns are. */
+/* The greatest distance off the axis from which pings see a row: by the beam, or by the places of pings and columns. */
 static double row_reach(const struct rma_view *view, const struct grid *row)
 {
     const double r = row->r_first, width = (row->x_count - 1) * row->x_step,

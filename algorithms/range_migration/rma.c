@@ -1,5 +1,5 @@
-/* Range migration of multi-receiver echoes (rma.h): the order of work, and its count. Each azimuth wavenumber is worked
-   on by one thread, receivers in order, so that the bits do not depend on the number of threads. */
+/* Range migration of multi-receiver echoes (rma.h): the order of work, and its count. One thread works on each azimuth
+   wavenumber, receivers in order, so that the bits do not depend on the number of threads. */
 #include "range_migration/rma.h"
 
 #include <omp.h>
@@ -51,8 +51,8 @@ static const struct rma_transform *transform(const struct rma *rma)
     return rma->problem.precision == PRECISION_DOUBLE ? &rma_transform_double : &rma_transform_float;
 }
 
-/* One swath's share of the counted FLOPs, by the rule of back projection: what is done to samples and pixels, 8 for a
-   product that is added to a sum; phases, recurrences, places and weights are not counted. */
+/* One swath's share of the counted FLOPs, by the rule of back projection: operations on samples and pixels, 8 for a
+   product added to a sum. Phases, recurrences, places and weights are not counted. */
 static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
 {
     const double receivers = rma->receivers, band = swath->band, q = swath->wavenumbers, length = swath->length;
@@ -154,8 +154,8 @@ static enum status count_work(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Scenes that back projection images in moments may ask range migration, whose transforms do not know how little is
-   wanted, for hours or for all memory: those are refused, before anything is allocated. */
+/* Scenes that back projection images in moments may take range migration hours or all memory, as its transforms do not
+   shrink with a small image. They are refused before anything is allocated. */
 static enum status check_work(const struct rma *rma)
 {
     const double real_bytes = rma->problem.precision == PRECISION_DOUBLE ? 8 : 4, much = 1000;

@@ -29,7 +29,7 @@
 
 /* Settings of all methods; 0 where a method does not have one. */
 struct rma_options {
-    int blocks;                             /* range blocks over all rows asked for; 0: by Eq. (13) and limit */
+    int blocks;                             /* range blocks over all wanted rows; 0: by Eq. (13) and limit */
     double limit;                           /* rad: the phase error that Eq. (13) accepts */
     int spacing, blend, stolt, sum, phases; /* indices into the choices of rma_params */
     int variant;                            /* enum rma_variant: of rma_lbf */

@@ -1,4 +1,4 @@
-/* The range blocks of the conversion (rma_engine.h): how many, where, and which of them a swath needs. */
+/* The range blocks of the conversion (rma_engine.h): their number, their places, and those that a swath needs. */
 #include <math.h>
 
 #include "range_migration/rma_engine.h"
@@ -10,8 +10,8 @@ static double block_place(const struct rma *rma, double r)
     return ((rma->options.spacing == RMA_INVERSE ? 1 / r : r) - rma->block_from) / rma->block_width;
 }
 
-/* Blocks that blend reach from the first row to the last with their centres, so that no row lies outside them; the
-   others do so with their edges. */
+/* Centres of blocks that blend reach from the first row to the last, so that no row lies outside them; of other blocks,
+   the edges do. */
 static void blocks_place(struct rma *rma, int count)
 {
     bool inverse = rma->options.spacing == RMA_INVERSE, blend = rma->options.blend && count > 1;
@@ -20,10 +20,10 @@ static void blocks_place(struct rma *rma, int count)
     rma->block_width = (to - from) / (blend ? count - 1 : count);
     rma->block_from = from + (blend ? 0 : rma->block_width / 2);
     if (from == to)
-        rma->block_width = from; /* of a single row: any does, but places are divided by it */
+        rma->block_width = from; /* of a single row: any value but 0, as places are divided by it */
 }
 
-/* Is the error that the conversion at the blocks' centres leaves at their ends below the limit (LBF21 Eq. (13))? */
+/* Is the error at the blocks' ends, by conversion at their centres, below the limit (LBF21 Eq. (13))? */
 static bool blocks_suffice(struct rma *rma, int count)
 {
     blocks_place(rma, count);
@@ -52,8 +52,8 @@ static bool blocks_suffice(struct rma *rma, int count)
     return true;
 }
 
-/* A single block has none to blend with: root mean square over the beam, at the farther of the ends, of the phase that
-   its centre's conversion leaves. */
+/* A single block has none to blend with: root mean square phase error over the beam, at the farther end, by conversion
+   at its centre. */
 static double lone_block_error(struct rma *rma)
 {
     enum { PLACES = 16, FREQUENCIES = 3 };

@@ -9,11 +9,11 @@
 
 static const double SLOWEST = 0.1; /* 1 - |v|/c that spectra need */
 static const double ERROR_LIMIT = 0.1, PROMISE = 0.12;
-static const double LAW_LIMIT = 0.1;                       /* rad: an image is as wrong as its phases */
-static const double TERMS_LIMIT = 0.05, TAPS_LIMIT = 0.05; /* relative L2: half of what the predicted error may be */
+static const double LAW_LIMIT = 0.1;                       /* rad: the image's error is about that of its phases */
+static const double TERMS_LIMIT = 0.05, TAPS_LIMIT = 0.05; /* relative L2: half the limit of the predicted error */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 static const double ECHO_ZONES = 4;     /* Fresnel zones beyond the echoes' own sine, over which their spectrum fades */
-static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
+static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: a cut farther out makes no ripple */
 
 struct rma_method rma_choose(const struct rma_method *method, const struct rma_options *options)
 {
@@ -65,7 +65,7 @@ static struct rma_bounds bounds_of(const struct rma_view *view)
     }
     if (view->method->terms > 0 && a->echo_sine > 0 && a->echo_tapers) /* a sharp edge fades too slowly */
         bounds.sine = fmin(bounds.sine, a->echo_sine + ECHO_ZONES * sqrt(a->sound_speed / lowest / (2 * nearest)));
-    /* A record that holds what the widest angle sees needs no other bound. */
+    /* A record that contains the echoes of the widest angle needs no other bound. */
     double tangent = bounds.sine / sqrt(1 - bounds.sine * bounds.sine);
     if (2 * farthest * (hypot(1, tangent) - 1) / a->sound_speed * a->fs <= a->samples)
         bounds.way = INFINITY;
@@ -158,7 +158,7 @@ static struct condition spa_amplitude(const struct rma_view *view)
                           "rows farther away, or receivers nearer to the transmitter");
 }
 
-/* Root mean square over the beam, the band and the array of the phase that the method's formula misses. */
+/* Root mean square phase error of the method's formula over the beam, the band and the array. */
 static double formula_at(const struct rma_view *view, double r, double low, double high)
 {
     enum { PLACES = 16, FREQUENCIES = 3, RECEIVERS = 3 };
@@ -226,7 +226,7 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
                        "back projection");
     list[(*count)++] = condition_least(SEVERITY_REFUSE, "pings", a->pings, 1,
                                        "the number of pings (one has no azimuth spectrum)", "back projection");
-    /* A limit at the edge of the echoes' own beam leaves out nothing but pairs without an echo of the pixel. */
+    /* A limit at the edge of the echoes' own beam leaves out only pairs without an echo of the pixel. */
     double whole = fmin(1, a->echo_sine > 0 ? a->echo_sine : 1);
     list[(*count)++] = condition_least(SEVERITY_REFUSE, "whole_aperture", a->aperture_limit, nextafter(whole, 0),
                                        "the scene's aperture_limit (a sine; an azimuth transform cannot choose "
@@ -240,7 +240,7 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
     return true;
 }
 
-/* What delay compensation needs beyond all that (delay_compensation.h). */
+/* Further conditions of delay compensation (delay_compensation.h). */
 static int delay_conditions(const struct rma_view *view, struct condition *list, int count)
 {
     const double error = view->converts ? delay_taps_error(view->problem->acquisition, view->method->taps) : 0;
@@ -253,7 +253,7 @@ static int delay_conditions(const struct rma_view *view, struct condition *list,
     return count;
 }
 
-/* The predicted error, and what may have caused it. */
+/* The predicted error, and its possible cause. */
 static int prediction_conditions(const struct rma_view *view, const struct straight_track *track, struct condition *all,
                                  int count)
 {
@@ -273,8 +273,7 @@ static int prediction_conditions(const struct rma_view *view, const struct strai
     return count;
 }
 
-/* What range migration cannot image at all: wavenumbers about another centre than 0, and other axes than the
-   track's. */
+/* Limits of range migration: no wavenumbers about another centre than 0, and no axes other than the track's. */
 static bool along_track(const struct problem *problem, struct condition *all, int *count)
 {
     const double squint = fabs(problem->acquisition->echo_squint) * 180 / M_PI;
@@ -290,7 +289,7 @@ static bool along_track(const struct problem *problem, struct condition *all, in
     return squint == 0 && turned == 0;
 }
 
-/* What is known without a prediction. False where something of it does not hold. */
+/* Conditions without a prediction. False where one of them is not met. */
 static bool requirements(const struct problem *problem, struct condition all[CONDITIONS_MAX], int *count,
                          struct straight_track *track)
 {

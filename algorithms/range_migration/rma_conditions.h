@@ -52,17 +52,17 @@ double prediction_error(const struct rma_view *view);
    not. At a pixel, back projection also sums pings from which its wavenumber is not sampled. Echoes of such a ping from
    elsewhere at the same delay are a ghost in back projection's image, not in that of a transform. With an aperture
    limit it may be the other way round. The value is the ghosts of point targets in the patches over the targets' own
-   images (relative L2), the worst of the patches. It refuses where a patch holds ghosts of the other patches' targets,
+   images (relative L2), the worst of the patches. It refuses where a patch has ghosts of the other patches' targets,
    and with an aperture limit. Without a limit, it warns where a patch is so wide that targets at its ends make ghosts
    within it: whether there are such targets is unknown (omega-k refuses there too, as it predicts no error). */
 struct condition ghosts_condition(const struct problem *problem, const struct straight_track *track);
 
 /* ---- rma_conditions.c ---- */
 
-/* rma_conditions: conditions_general among them. What may cause a large error (doppler, the formula's law) refuses only
-   where the predicted error is too large, and then in its place; without such a cause predicted_error itself refuses.
-   spa_amplitude always refuses: the prediction assumes the transmitter's beam for each pair. Its value is NAN without
-   memory. */
+/* rma_conditions: conditions_general among them. A possible cause of a large error (doppler, the formula's law) refuses
+   only where the predicted error is too large, and then in its place; without such a cause predicted_error itself
+   refuses. spa_amplitude always refuses: the prediction assumes the transmitter's beam for each pair. Its value is NAN
+   without memory. */
 
 /* The last condition, which refuses beyond the method's error_limit. */
 struct condition rma_predicted_error(const struct rma_view *view);

@@ -3,9 +3,9 @@
    precision), convert.c and focus.c work on one azimuth wavenumber (for each precision and instruction set), rma.c puts
    them in order. Pointers without a type hold values of the plan's precision.
 
-   THE STAGES, with the shape of the array before and after each (rma.h has the equations). All values are complex,
-   the last dimension is contiguous. M receivers; P = period, the pings and zeros after them; Q = M P wavenumbers;
-   `row` bins hold the band of a swath and fill whole vectors; N = needed, the blocks that a swath's rows are made of.
+   THE STAGES, with the shape of the array before and after each (rma.h has the equations). All values are complex, the
+   last dimension is contiguous. M receivers; P = period, the pings and zeros after them; Q = M P wavenumbers; `row`
+   bins contain the band of a swath and fill whole vectors; N = needed, the blocks that a swath's rows use.
 
    compress      [pings][M][samples] -> [pings][M][row] for each swath, in swath->data
                  each record through the matched filter, by transforms of record_length (unless the echoes come
@@ -205,17 +205,17 @@ struct rma {
     int receivers, pings, samples;
     double *offset;           /* [receivers] m */
     int extremes[2];          /* the receivers of least and greatest offset */
-    double nearest, farthest; /* m: all rows asked for */
+    double nearest, farthest; /* m: of all wanted rows */
     struct rma_bounds bounds;
     int groups;    /* of receivers */
     bool recurs;   /* by recurrence: receivers are evenly spaced, and phases=libm is not set */
     bool converts; /* false: one receiver, at the transmitter */
 
     /* pulse compression */
-    int from, held;    /* the compressed samples that swaths take: [from, from + held) of a record */
+    int from, held;    /* the compressed samples that swaths use: [from, from + held) of a record */
     int read;          /* the samples [from, from + read) that these take: as many, and a pulse's length if raw */
     int record_length; /* of its transform; 0: the echoes come compressed */
-    double half_band;  /* Hz: half of what holds the compressed pulse */
+    double half_band;  /* Hz: half of the compressed pulse's band */
     double loss;       /* energy of the compressed pulse outside it, relative */
     int taper;         /* samples over which a cut tapers, and as many between the taper and the rows */
     void *filter;      /* complex [record_length]: conj(replica)/energy */

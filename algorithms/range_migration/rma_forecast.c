@@ -1,6 +1,6 @@
 /* The forecast of range migration (rma_forecast and rma_cost in rma_conditions.h): estimates of an image's error, where
-   its conditions refuse by bounds, and counts of what takes its time. What the terms of delay compensation leave is
-   their bound. */
+   its conditions refuse by bounds, and counts for its time. The error by the terms of delay compensation is their
+   bound. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,27 +12,25 @@
 
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
 static const double STOLT_SHARE = 4;                  /* of kaiser_error: measured */
-/* rad, root mean square over a block, for each rad at its ends: a lone block is taken up to 1/(4 pi), several that
-   blend leave less (docs/range_migration.md). */
+/* rad, root mean square over a block, for each rad at its ends: a lone block is used up to 1/(4 pi); several that blend
+   have less (docs/range_migration.md). */
 static const double BLOCK_SHARE = 0.08;
-static const double TERMS_SHARE =
-    1.2; /* of what the terms leave, which targets have more of than their mean: measured */
-static const double PULSE_PERIODS = 8;      /* of B: of a record beside its rows (rma_layout.c) */
+static const double TERMS_SHARE = 1.2; /* of the terms' error, which is larger at targets than in the mean: measured */
+static const double PULSE_PERIODS = 8; /* of B: of a record beside its rows (rma_layout.c) */
 static const double PULSE_SHARE = 1.0 / 16; /* of that, where the pulse's own spectrum reaches so far */
-static const double EDGE_BINS = 4; /* of a record's transform that are wrong at half the sampling rate: measured */
-static const double TAPERED =
-    0.06; /* of that error, where ends that taper leave half the sampling rate out: measured */
+static const double EDGE_BINS = 4;  /* of a record's transform that are wrong at half the sampling rate: measured */
+static const double TAPERED = 0.06; /* of that error, where tapered ends exclude half the sampling rate: measured */
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
-/* What range migration keeps of the band. */
+/* The part of the band that range migration keeps. */
 struct band {
     double half; /* cycles a sample */
     double lost; /* energy, relative: beyond it, or at half the sampling rate */
 };
 
-/* Energy density at half the sampling rate over that of the band, by the records' ends: what is cut D samples beside an
-   echo, 1/(sqrt 2 pi D B/fs) of it, ends in a step, whose spectrum has half of that there. */
+/* Energy density at half the sampling rate over that of the band, by the records' ends: a cut D samples beside an echo
+   is a step of 1/(sqrt 2 pi D B/fs) of it, whose spectrum has half of that there. */
 static double density_of_ends(const struct problem *problem)
 {
     const struct acquisition *a = problem->acquisition;
@@ -47,8 +45,8 @@ static double density_of_ends(const struct problem *problem)
     return (pow(fmax(before, 1), -2) + pow(fmax(after, 1), -2)) / (8 * M_PI * M_PI);
 }
 
-/* Raw echoes keep the pulse's band; range migration wider by what tapers smear where the first row lets the records be
-   cut, and by what Stolt interpolation reads beyond it, where only samples have anything. */
+/* Raw echoes keep the pulse's band. Range migration keeps more: the smear by tapers, where the first row lets the
+   records be cut, and the reach of Stolt interpolation, where only samples have anything. */
 static enum status raw_band(const struct rma_view *view, double edge, struct band *band, double *density)
 {
     const struct problem *problem = view->problem;
@@ -88,8 +86,8 @@ static enum status band_of(const struct rma_view *view, double edge, struct band
     enum status status = a->compressed ? STATUS_OK : raw_band(view, edge, band, &density);
     const double ends = EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
     band->lost += band->half >= 0.5 ? ends : pow(TAPERED, 2) * ends;
-    band->lost += a->noise; /* it comes from all sides, beyond the wavenumbers and the band that are kept as well */
-    if (view->period > 0)   /* no tapers: all that the cuts have beyond the band */
+    band->lost += a->noise; /* noise also comes from beyond the wavenumbers and the band kept */
+    if (view->period > 0)   /* no tapers: all energy of the cuts beyond the band */
         band->lost += cut * (1 - 2 * (band->half - edge)) * a->fs / a->bandwidth;
     return status;
 }
@@ -102,9 +100,9 @@ enum status rma_band_lost(const struct rma_view *view, double edge, double *lost
     return status;
 }
 
-/* ---- what it takes ---- */
+/* ---- cost ---- */
 
-/* The share of a swath's wavenumbers that rma_line keeps: of every few of them. */
+/* The share of a swath's wavenumbers that rma_line keeps, by a sample of them. */
 static double share_kept(const struct rma *rma, const struct rma_swath *swath)
 {
     enum { LOOKED_AT = 500 };
@@ -138,7 +136,7 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
     }
 }
 
-/* What the settings leave of the exact conversion: blocks or terms, taps. */
+/* The error of the conversion by the settings: blocks or terms, taps. */
 static enum status settings_errors(const struct problem *problem, const struct rma_method *method,
                                    const struct rma_options *options, double error[CAUSES])
 {
@@ -151,7 +149,7 @@ static enum status settings_errors(const struct problem *problem, const struct r
     if (status != STATUS_OK)
         return status;
     error[CAUSE_DELAYS] = terms ? delay_taps_expected(&view, method->taps, band.half) : 0;
-    /* Blocks that are asked for by number, or have hard edges, have no law. */
+    /* Blocks with a given number, or with hard edges, have no law. */
     const bool lawless = options->blocks || !options->blend; /* not of terms */
     error[CAUSE_BLOCKS] = terms            ? TERMS_SHARE * delay_terms_left(&view, method->terms)
                           : !view.converts ? 0
@@ -203,7 +201,7 @@ enum status rma_forecast(const struct problem *problem, const void *given, const
     acquisition_is_straight(problem->acquisition, &track);
     const struct rma_view view = rma_view_of(problem, &method, &track);
     status = band_of(&view, 0, &band);
-    /* Where B = fs, the bin at fs/2 stands for both ends of the band: no law. */
+    /* Where B = fs, the bin at fs/2 is both ends of the band: no law. */
     forecast->error[CAUSE_SPECTRUM] =
         problem->acquisition->bandwidth < problem->acquisition->fs ? sqrt(band.lost) : INFINITY;
     for (int k = 0; k < count; k++)

@@ -1,5 +1,5 @@
-/* What a range migration's scene needs (rma_engine.h): the track, the blocks of the conversion, and the swaths with
-   their cuts of the record and their transforms. All in double, nothing of it depends on the echoes. */
+/* The layout of a range migration for a scene (rma_engine.h): the track, the blocks of the conversion, and the swaths
+   with their cuts of the record and their transforms. All in double and independent of the echoes. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "range_migration/rma_conditions.h"
 #include "range_migration/rma_engine.h"
 
-static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: what it smears stays beside the band */
+static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: its smear stays beside the band */
 static const double OUTSIDE_MOST = 2;  /* of the record's length: rows outside it */
 static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no pulse wraps around the cut */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
@@ -48,7 +48,7 @@ static enum status lay_receivers(struct rma *rma)
     return STATUS_OK;
 }
 
-/* What is known of delay compensation without its tables. */
+/* Delay compensation without its tables. */
 static enum status lay_delay(struct rma *rma)
 {
     struct rma_delay *delay = rma->delay = store_take(&rma->store, 1, sizeof *delay, 0);
@@ -102,13 +102,13 @@ static enum status lay_track(struct rma *rma)
 
 int rma_taper(const struct acquisition *a)
 {
-    /* No longer than an eighth of the record for a narrow band's sake; the whole record at fs = B. */
+    /* For a narrow band at most an eighth of the record; the whole record at fs = B. */
     const double band = fmax(a->bandwidth / a->fs, 8 * TAPER_PERIODS / a->samples);
     const double share = fmax(fmin(1 - a->bandwidth / a->fs, band), TAPER_PERIODS / a->samples);
     return (int)fmin(ceil(TAPER_PERIODS / share), a->samples);
 }
 
-/* The bins that hold the compressed pulse; of echoes that come compressed already, twice the band. */
+/* The bins of the compressed pulse; of echoes that come compressed, twice the band. */
 static enum status lay_band(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
@@ -181,14 +181,14 @@ static enum status lay_patches(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Zeros after the pings, since the period wraps around: what is focused beyond either end of the track, as far as the
-   widest angle sees, must not reach a wanted column. */
+/* Zeros after the pings, as the period wraps around: targets focused beyond either end of the track, up to the widest
+   angle, must not reach a wanted column. */
 double rma_period(const struct acquisition *a, const struct rma_bounds *bounds, double spacing, double farthest,
                   double overhang)
 {
     const double angle = farthest * bounds->sine / sqrt(1 - bounds->sine * bounds->sine);
     const double reach = rma_reach(a, bounds, farthest), folds = reach < angle ? bounds->way + reach : 0;
-    /* A receiver aside sees half its offset farther; what is less than a Fresnel zone tapers like any edge. */
+    /* A receiver aside sees half its offset farther; less than a Fresnel zone tapers like any edge. */
     const double zone = sqrt(a->sound_speed / a->fc * farthest / 2);
     const double extent = (a->pings - 1) * spacing + overhang + angle + fmax(0, bounds->aside / 2 - zone);
     return fmax(ceil(extent / spacing) + 1, folds / spacing);
@@ -227,8 +227,8 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
     return STATUS_OK;
 }
 
-/* Range: what the rows need of the record, the tapers included, and zeros up to what the pulse at the first row and the
-   delays of the widest angle need beyond it. */
+/* Range: the part of the record for the rows, with tapers, and zeros for the pulse at the first row and the delays of
+   the widest angle beyond it. */
 static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
 {
     double first, last, c = rma->setting.sound_speed, end = rma->samples - 1, margin = 2 * rma->taper;
@@ -247,7 +247,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     if (!(to - from < INT_MAX / 64))
         return too_long(rma, swath, to - from);
     swath->first = (int)from;
-    bool recorded = from <= end && to >= 0; /* else nothing is taken: the rows lie beside the record */
+    bool recorded = from <= end && to >= 0; /* else no samples: the rows lie beside the record */
     swath->begin = recorded ? (int)fmax(from, 0) : swath->first;
     swath->end = recorded ? (int)fmin(to, end) + 1 : swath->first;
     swath->t_first = rma->t0 + from / rma->fs;
@@ -258,7 +258,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
         return too_long(rma, swath, RMA_OVERSAMPLING * (to - from));
 
-    /* What the tapers smear beyond the pulse's band belongs to it. */
+    /* The tapers' smear beyond the pulse's band is part of it. */
     int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
     double half = ceil(rma->half_band / rma->fs * swath->length);
     if (swath->begin > 0 || swath->end < rma->samples)
@@ -289,7 +289,7 @@ static enum status swath_samples(const struct rma *rma, struct rma_swath *swath)
             DELAY_NEAREST);
     swath->centre = swath->held / 2 / lanes * lanes;
     swath->row = (swath->held + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
-    /* Rows a power of two apart would share a few sets of the cache. */
+    /* Rows a power of two apart would share some sets of the cache. */
     swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
     if (rma->taps > 0) /* as much to either side of `centre` as lies behind it */
         swath->stolt_length = fft_length_fast((long long)ceil(RMA_OVERSAMPLING * 2 * (swath->held - swath->centre)));
@@ -338,8 +338,8 @@ static enum status lay_swaths(struct rma *rma)
     return status;
 }
 
-/* By how many samples the map reads before and behind a swath's own ones: delays of all receivers, which are smooth in
-   range, and the taps; runs are whole. */
+/* Samples that the map reads before and behind a swath's own: by delays of all receivers, which are smooth in range,
+   the taps and whole runs. */
 static void map_reach(const struct rma *rma, const struct rma_swath *swath, double *before, double *behind)
 {
     enum { RANGES = 9 };
@@ -358,7 +358,7 @@ static void map_reach(const struct rma *rma, const struct rma_swath *swath, doub
     *behind = slack + most + rma->delay->taps.taps + RMA_RUN;
 }
 
-/* What the swaths take of a record. Correlation of a stretch of it is exact: that much is compressed. */
+/* The samples of a record that the swaths use. Only these are compressed, as correlation of a stretch is exact. */
 static enum status lay_record(struct rma *rma)
 {
     const int pulse = rma->record_length > 0 ? rma->problem.acquisition->pulse_length : 1;

@@ -1,4 +1,4 @@
-/* The phases that turn multi-receiver spectra into monostatic ones: for each receiver, range and wavenumber a
+/* The phases that convert multi-receiver spectra into monostatic ones: for each receiver, range and wavenumber a
    polynomial in frequency, fitted to the method's formula at Chebyshev's nodes. */
 #include <string.h>
 
@@ -24,7 +24,7 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
     double c = s->sound_speed, beta = s->speed / c, b1 = (1 - beta) * (1 + beta);
     double period_m = swath->period * fabs(rma->spacing);
     struct rma_line line = {.nu = (q - swath->wavenumbers / 2) / period_m, .begin = swath->band};
-    /* What the exact spectrum ends at; the formulas know no speed there, and end at broadside's own 1 besides. */
+    /* The end of the exact spectrum; the formulas ignore the speed there, and end at a sine of 1 as well. */
     double edge = line.nu > 0 ? 1 + beta : 1 - beta;
     if (rma->method.spectrum != spectrum_exact)
         edge = fmax(edge, 1);
@@ -82,7 +82,7 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
                     polynomials[k][power] += rma->fit.powers[power][n] * values[k][n];
                 same = same && (k < 2 || fabs(ramps->curve[power] - ramps[-1].curve[power]) < SAME_CURVE);
             }
-        if (same || count < 3) /* one or two receivers have none of their own */
+        if (same || count < 3) /* one or two receivers have no curvature of their own */
             memcpy(ramps->curve, begin > 0 ? ramps[-1].curve : ramps->curve, sizeof ramps->curve);
     }
 }

@@ -13,7 +13,7 @@
 enum {
     LANES = RMA_ALIGNMENT / sizeof(real),
     BLOCKS = 4, /* vectors of bins that are copied together for the azimuth FFT */
-    AHEAD = 256 /* wavenumbers of a row that are on their way from memory */
+    AHEAD = 256 /* wavenumbers of a row that are prefetched */
 };
 
 static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
@@ -55,8 +55,7 @@ static void kernel_fill(const struct rma *rma)
             kernel[i * taps + k] = (real)kaiser_value(taps, rma->shape, (double)i / RMA_INTERVALS - (1 - taps / 2 + k));
 }
 
-/* What samples are multiplied by so that the kernel neither weights nor blurs them, 1 over its transform; held where
-   no row lies. */
+/* The samples' factor that undoes the kernel's weight: 1 over its transform; constant where no row lies. */
 static void apodization_fill(const struct rma *rma, const struct rma_swath *swath)
 {
     real *apodization = swath->apodization;
@@ -125,7 +124,7 @@ static void plan_swath(struct rma *rma, struct rma_swath *swath)
     }
 }
 
-/* What serves all swaths. */
+/* The parts shared by all swaths. */
 static void tables_fill(struct rma *rma)
 {
     real *tapers = rma->tapers, *basis = rma->delay ? rma->delay->basis : NULL;
@@ -204,7 +203,7 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
     memset(row + 2 * swath->band, 0, 2 * (size_t)(swath->row - swath->band) * sizeof *row);
 }
 
-/* What is held of a compressed record between zeros. */
+/* The stored part of a compressed record, between zeros. */
 static real *padded(const struct rma *rma, const real *record)
 {
     const size_t guard = 2 * (size_t)rma->delay->guard, n = 2 * (size_t)rma->held;

@@ -4,15 +4,15 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Evanescent cells raise no exception: they are no fault. */
+/* Evanescent cells raise no exception, as they are no error. */
 static double root_of(double square)
 {
     return square > 0 ? sqrt(square) : NAN;
 }
 
 /* The exact delay (LBF21 Eq. (1)) and its first two derivatives, for the transmitter u metres ahead of the target: the
-   way out, and the way back to a receiver that is b metres ahead of the target when the wave is there. Written so that
-   nothing cancels, whatever the speed. */
+   way out, and the way back to a receiver that is b metres ahead of the target when the wave is there. Nothing cancels,
+   at any speed. */
 struct history {
     double delay, slope, curvature; /* s, s/m, s/m^2 */
 };
@@ -45,17 +45,18 @@ double spectrum_exact(const struct spectrum_setting *setting, double d, double r
     if (!(r > 0 && square > 0))
         return NAN;
     const double s = sqrt(square);
-    /* In units of the geometry, so that no square under- or overflows; a range below 1e-100 of the offset is none. */
+    /* In units of the geometry, so that no square under- or overflows; a range below 1e-100 of the offset counts as
+       0. */
     const double unit = fmax(r, fabs(d)), offset = d / unit, range = fmax(r / unit, 1e-100), cycles = frequency * unit;
     /* The delay is convex: its slope rises through -nu/F once. Newton's method from the closed form of d = 0, kept
-       between the ends that have been seen, and as long as there are none within a reach that doubles. */
+       inside the bracket found so far; without one, within a reach that doubles. */
     double low = -INFINITY, high = INFINITY, reach = 1, u = -range * along / s - offset / 2;
     for (int step = 0; step < 400; step++) {
         const struct history h = history_at(setting, offset, range, u);
         const double excess = h.slope + nu / frequency, newton = u - excess / h.curvature;
-        const double rounding = 1e-15 * (1 + cycles * h.delay); /* cycles that do not count */
+        const double rounding = 1e-15 * (1 + cycles * h.delay); /* cycles: below rounding */
         *(excess > 0 ? &high : &low) = u;
-        const double left = cycles * excess * excess / h.curvature / 2; /* what the next step would add, at most */
+        const double left = cycles * excess * excess / h.curvature / 2; /* upper bound of the next step's change */
         if (left <= rounding || cycles * fabs(excess) * (high - low) <= rounding)
             return -2 * M_PI * (cycles * (h.delay + nu / frequency * u) - (left <= rounding ? left : 0));
         const double farthest = excess > 0 ? fmax(low, u - reach) : fmin(high, u + reach);
@@ -124,7 +125,7 @@ double spectrum_monostatic(const struct spectrum_setting *setting, double freque
     return 4 * M_PI / c * root_of((f - along) * (f + along));
 }
 
-/* 2 pi F beta: what the exact spectrum has beyond the one of d = 0 and the way of the phase centre. */
+/* 2 pi F beta: the exact spectrum minus that of d = 0 and the way of the phase centre. */
 static double bistatic(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
 {
     double monostatic = r * spectrum_monostatic(setting, frequency, nu);
@@ -158,7 +159,7 @@ double spectrum_compensated(const struct spectrum_setting *setting, double d, do
     const double walk = spectrum_walk(setting, nu);
     if (isnan(walk))
         return NAN;
-    /* The delay at this frequency and spectrum_residual, which takes it off at the carrier. */
+    /* The delay at this frequency and spectrum_residual, which subtracts it at the carrier. */
     double late = 2 * M_PI * (frequency - setting->fc) * spectrum_abeam(setting, d, r * walk);
     return -(r * spectrum_monostatic(setting, frequency, nu) - M_PI * nu * d + late
              + bistatic(setting, d, r, setting->fc, nu));

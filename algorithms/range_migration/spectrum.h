@@ -28,7 +28,7 @@ spectrum_function spectrum_exact;
 /* Loffeld's formula, -(psi + psi_i/2), LBF21 Eqs. (3) to (5). `printed` takes theta at fc, as the paper does: the whole
    error that it reports for its first receiver. `corrected` takes theta at F. */
 spectrum_function spectrum_lbf_printed, spectrum_lbf_corrected;
-/* LBF21 Eq. (7): Eq. (5) with S^3/F^2 replaced by F, theta at fc. What its Figs 3 and 8 show. */
+/* LBF21 Eq. (7): Eq. (5) with S^3/F^2 replaced by F, theta at fc, as in its Figs 3 and 8. */
 spectrum_function spectrum_lbf7;
 /* Phase-centre approximation, LBF21 Eq. (6). */
 spectrum_function spectrum_pca;

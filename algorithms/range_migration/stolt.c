@@ -14,7 +14,7 @@ struct bins {
     double to_position, to_fc; /* of the frequency above fc: bins of the spectrum */
     double to_row, to_centre;  /* cycles of j at the first row; s, the samples' origin */
     double shift;              /* cycles: to the patch's columns */
-    double weight;             /* of the cell: everything that does not change along K */
+    double weight;             /* of the cell: all factors constant along K */
 };
 
 static inline __attribute__((always_inline)) struct fit_cell bin_exact(const void *of, double j)
@@ -26,8 +26,8 @@ static inline __attribute__((always_inline)) struct fit_cell bin_exact(const voi
                              b->weight * frequency / (root * sqrt(kappa))}; /* F/(kappa^1.5) dF/dK */
 }
 
-/* What eight lanes sum to, left in four: of the real parts, then of the imaginary ones. `taps`, a multiple of
-   eight, is a constant where this is inlined. */
+/* Sums of eight lanes, each in four lanes: of the real parts, then of the imaginary ones. `taps`, a multiple of eight,
+   is a constant where this is inlined. */
 static inline __attribute__((always_inline)) void eights(const struct rma *rma, const real *restrict spectrum,
                                                          int length, int taps, double position, vec8 *sums)
 {
@@ -46,8 +46,8 @@ static inline __attribute__((always_inline)) void eights(const struct rma *rma, 
             + __builtin_shufflevector(vr, vi, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
-/* As `interpolate`, four bins at a time: what sums a vector's lanes serves four. SPAN positions have room for the last
-   four, which repeat the last one. */
+/* As `interpolate`, four bins at a time: they share the sum over a vector's lanes. SPAN positions have room for the
+   last four, which repeat the last one. */
 static inline __attribute__((always_inline)) void interpolate_fours(const struct rma *rma,
                                                                     const real *restrict spectrum, int length, int taps,
                                                                     int n, double *restrict position, real *restrict re,
@@ -93,7 +93,7 @@ static inline __attribute__((always_inline)) void interpolate(const struct rma *
     }
 }
 
-/* Bins of K that the band reaches, and some beside it for what the interpolation and the blocks' edges spread. */
+/* Bins of K that the band reaches, and some beside it for the spread by interpolation and blocks' edges. */
 static struct bins bins_of(const struct workspace *w, const struct rma_patch *patch, long long *first, long long *last)
 {
     const struct rma *rma = w->rma;

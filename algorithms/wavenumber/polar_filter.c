@@ -155,7 +155,7 @@ static complex_real *scratch_of(const struct polar_filter *f)
     return f->scratch + (size_t)omp_get_thread_num() * f->scratch_length;
 }
 
-/* The centre's delay at a row taken off (sign 1: sample 0 is then at that delay) or put back (-1): bins in the
+/* Remove the centre's delay at a row (sign 1: sample 0 is then at that delay) or restore it (-1): bins in the
    transform's order, whose samples begin at t0, times exp(sign j 2 pi (fc delay + f (delay - t0))) and `scale`. */
 static void shift(const struct polar_filter *f, real *bins, int row, double sign, real scale)
 {
@@ -172,7 +172,7 @@ static void shift(const struct polar_filter *f, real *bins, int row, double sign
     }
 }
 
-/* Range from the sub-aperture's middle at sample k after the centre's delay is off; samples wrap around. */
+/* Range from the sub-aperture's middle at sample k without the centre's delay; samples wrap around. */
 static inline double range_at(const struct polar_filter *f, const struct aperture *p, int k)
 {
     const struct acquisition *a = f->acquisition;
@@ -245,7 +245,7 @@ static void mask_strip(const struct polar_filter *f, const struct aperture *p, i
         memcpy(wave + i * STRIP, field + i * length, (size_t)width * sizeof *wave);
     memset(wave + count * STRIP, 0, ((size_t)p->length - count) * STRIP * sizeof *wave);
     FFTW(execute_dft)(p->forward, wave, wave);
-    /* sin psi is known but for whole periods: it lies about the beam's axis. */
+    /* sin psi is ambiguous by whole periods: take the one about the beam's axis. */
     const double period = 2 * M_PI * f->up / fabs(f->spacing) / (2 * f->kc), step = period / p->length;
     for (int q = 0; q < p->length; q++) {
         double sine = (f->spacing < 0 ? -q : q) * step + p->sine - f->slope;
@@ -281,7 +281,7 @@ static void mask(const struct polar_filter *f, const struct aperture *p)
         mask_strip(f, p, s * STRIP, f->length - s * STRIP < STRIP ? f->length - s * STRIP : STRIP);
 }
 
-/* Row of the field back to a record: those between the pings are not needed. */
+/* A row of the field back to a record; rows between the pings are not needed. */
 static void restore(const struct polar_filter *f, const struct aperture *p, complex_real *records)
 {
 #pragma omp parallel for schedule(static)

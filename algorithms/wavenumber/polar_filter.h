@@ -1,7 +1,7 @@
 /* The polar-format spatial filter (PF05): range-compressed echoes of a monostatic sonar, without those from outside a
    target area. A coarse polar-format image of each sub-aperture is masked, and turned back into echoes:
 
-       e_p(x', F) = e(x', F) exp(+j 2 pi F tau_c(x'))      the delay of the area's centre taken off (PF05 Eq. (6))
+       e_p(x', F) = e(x', F) exp(+j 2 pi F tau_c(x'))      the delay of the area's centre removed (PF05 Eq. (6))
        FFT over u = x' - x_s, IFFT over F                  at (k, t): sin psi = k/(2 k_c) + sin alpha, R = rho + c t/2,
                                                            alpha, rho: of the centre seen from x_s (Eqs. (14), (15))
        kept where |R cos psi - R_c| < R_a, |x_s + R sin psi - X_c| < X_a     (Eq. (16))
@@ -10,7 +10,7 @@
    PF05 prints Eqs. (7), (11) and (15) with errors: everything of (7) stands in the exponent, alpha is atan((X_c -
    x_s)/R_c), and psi is counted from broadside. The plane wave misplaces a target: its azimuth is stretched by R/R_c
    about x_s. With curvature=on the quadratic term is removed for each range, exp(+j k_c u^2 (1/R - 1/rho)) in (u, t),
-   and put back after the mask: one sub-aperture then does what the paper needs four for.
+   and restored after the mask: one sub-aperture then replaces the paper's four.
 
    Removing the centre's delay widens the azimuth band. So echoes are upsampled along the track (1, 2, 4, ... times): k
    spans 2 k_c (beam + the centre's own sines over a sub-aperture). */
@@ -28,7 +28,7 @@ struct polar_setting {
 
 struct polar_shape {
     int subapertures, upsampling;
-    double flops, bytes; /* of one filtering; held with one thread */
+    double flops, bytes; /* of one filtering; of the plan with one thread */
 };
 
 /* STATUS_OK when the echoes can be filtered: a uniform straight track, one receiver at the transmitter, two pings, a

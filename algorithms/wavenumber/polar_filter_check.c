@@ -1,5 +1,5 @@
-/* What the polar-format filter needs of its echoes, how it divides them, and what it takes off targets that it should
-   keep (polar_filter.h). */
+/* The polar-format filter: its requirements, its sub-apertures, and its loss of targets inside the area
+   (polar_filter.h). */
 #include "wavenumber/polar_filter.h"
 
 #include <math.h>
@@ -90,11 +90,11 @@ int polar_filter_subapertures(const struct acquisition *a, int asked)
     return count;
 }
 
-/* ---- what the filter keeps ---- */
+/* ---- energy kept ---- */
 
 enum { PINGS_MOST = 500, CELLS = 4, PARTS = 16 };
 static const double PLACE = 0.8;   /* of the area's halves, where targets count as inside */
-static const double LEAKS = 0.01;  /* side lobes, of what lies outside */
+static const double LEAKS = 0.01;  /* side lobes, of the energy outside */
 static const double LOSS_MOST = 3; /* dB: half of the energy */
 
 /* The share of a sinc's energy, its null at 1, that lies within (low, high): in the samples of the mask, at `from` and
@@ -117,13 +117,13 @@ struct energy {
     double all, kept;
 };
 
-/* What pings [first, end), a sub-aperture, add. A ping at u off its middle has the target, the centre's delay taken
-   off, at the range and under the angle
+/* Add pings [first, end) of a sub-aperture. For a ping u off its middle, without the centre's delay, the target is at
+   the range and the angle
 
        R = rho + R_t(u) - R_c(u),    sin psi = sin alpha + sin theta_t(u) - sin theta_c(u),
 
-   blurred by the pulse and by the pings that see it, and is kept as far as the mask holds that: a target beside the
-   centre walks in range, out of a thin area. */
+   blurred by the pulse and by the pings that see it. Its part inside the mask is kept: a target beside the centre walks
+   in range, out of a thin area. */
 static void aperture_add(const struct acquisition *a, bool curvature, int first, int end, struct vector place,
                          struct energy *energy)
 {

@@ -1,5 +1,5 @@
-/* Omega-k imaging (wk.h): the order of work, and its count. Each line is worked on by one thread, so that the bits do
-   not depend on the number of threads. */
+/* Omega-k imaging (wk.h): the order of work, and its count. One thread works on each line, so that the bits do not
+   depend on the number of threads. */
 #include "wavenumber/wk.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 
        unfolded   Kx is laid out as far as the beam's wavenumbers reach, and the alias that belongs to a cell is the one
                   nearest to K_R sin theta; axes are the track's. wk_classic.
-       rotated    the centroid is taken off, S(K_R, X) exp(-j K_R sin theta X), so that wavenumbers lie about zero; axes
+       rotated    the centroid is removed, S(K_R, X) exp(-j K_R sin theta X), so that wavenumbers lie about zero; axes
                   are turned by theta (SQ18 Eqs. (6) to (9)):
                       Kx0 = Kx cos theta - Ky sin theta,  Ky0 = Kx sin theta + Ky cos theta,  K_R^2 = Kx0^2 + Ky0^2.
                   Interpolated along azimuth first, from Kx - K_R sin theta to Kx0 (SQ18 Eq. (12)), and then along
@@ -17,11 +17,11 @@
    SQ18 prints exp(+j K_R R) in Eq. (2), with which Eq. (3) would double the centroid; the phase is -K_R R.
    Both are exact for a platform that moves while the pulse travels: at the speed v, b = v^2/c^2, it is
        F = v Kx/(4 pi) + sqrt((c Kx/(4 pi))^2 + (1 - b) (c Ky/(4 pi))^2)
-   (spectrum_monostatic solved for F), in whatever axes. Scale and phase are those of back projection: each cell has the
+   (spectrum_monostatic solved for F), in any axes. Scale and phase are those of back projection: each cell has the
    weight of range_migration/rma.h. Stages:
 
        compress   matched filter; wk_polar: the filter
-       range      FFT of each record, the centroid taken off
+       range      FFT of each record, the centroid removed
        azimuth    FFT over the pings
        rotate     azimuth interpolation (rotated axes only)
        stolt      range interpolation onto Ky, phases and weights
@@ -40,7 +40,7 @@ struct wk_options {
     int taps;         /* index into wk_taps_names: of all interpolations */
     double pad;       /* rotated axes: length of the azimuth transform over the pings */
     int subapertures; /* of the filter; 0: as many as need no upsampling */
-    int curvature;    /* 1: the filter takes off the wavefronts' curvature */
+    int curvature;    /* 1: the filter removes the wavefronts' curvature */
 };
 
 extern const char *const wk_taps_names[], *const wk_unfold_names[];

@@ -7,7 +7,7 @@
 #include "wavenumber/polar_filter.h"
 
 static const double SLOWEST = 0.1;          /* of 1 - |v|/c, as in range migration */
-static const double SLOWEST_ROTATED = 0.78; /* beyond, axes turned by the angle at rest leave 7 % and more */
+static const double SLOWEST_ROTATED = 0.78; /* beyond, axes turned by the angle at rest err by 7 % and more */
 
 double wk_centroid_slope(const struct acquisition *a, const struct straight_track *track)
 {
@@ -17,7 +17,7 @@ double wk_centroid_slope(const struct acquisition *a, const struct straight_trac
     return fabs(moving - still) * 4 * fabs(track->spacing) * a->fc / a->sound_speed > 0.1 ? moving : still;
 }
 
-/* What the pings see of the patches. */
+/* The patches as seen from the pings. */
 struct view {
     const struct acquisition *acquisition;
     double spacing, slope;
@@ -79,7 +79,7 @@ static struct worst patches_see(const struct view *view, const struct problem *p
     return worst;
 }
 
-/* What the beam and the patches make of it. A beam that looks too far along the track has the first condition only. */
+/* Conditions of beam and patches. A beam that looks too far along the track has the first one only. */
 static void beam_conditions(const struct problem *problem, const struct straight_track *track, struct condition *all,
                             int *count)
 {
@@ -111,7 +111,7 @@ struct rma_view wk_view_of(const struct problem *problem, const struct straight_
     return view;
 }
 
-/* Those that cost little; the track is filled where all of them hold. */
+/* The cheap conditions; fills the track where all of them are met. */
 static int requirements(const struct problem *problem, struct condition all[CONDITIONS_MAX],
                         struct straight_track *track)
 {
@@ -129,7 +129,7 @@ static int requirements(const struct problem *problem, struct condition all[COND
     return count;
 }
 
-/* What a method may refuse by. */
+/* The conditions that may refuse. */
 static int refusals(const struct problem *problem, const struct wk_method *method, struct condition *list, int room)
 {
     struct straight_track track;

@@ -1,7 +1,7 @@
 /* The plan of an omega-k imager (wk.h). wk_layout.c lays it out, wk_transform.c transforms along range and azimuth (for
    each precision), wk_record.c, wk_line.c and wk_row.c work on one record, one azimuth wavenumber and one image row
    (for each precision and instruction set), wk.c puts them in order. Pointers without a type hold values of the plan's
-   precision; all are complex unless said otherwise, the last dimension is contiguous.
+   precision; all are complex unless stated otherwise, the last dimension is contiguous.
 
    Positions of an image are taken in the plan's own axes, turned by `angle` (0 where they are the track's) about the
    track's middle ping at x = x_middle, r = 0:  x' = (x - x_middle) cos - r sin,  r' = (x - x_middle) sin + r cos.
@@ -34,9 +34,9 @@ enum {
     WK_TILE = 8          /* neighbouring lines whose rows are stored together */
 };
 #define WK_WIDEST_SINE 0.98 /* of the angles that are imaged: nearer to the track nothing is resolved in range */
-/* Of an image that is resampled, and of the record by the range transform. With 8 taps the lesser one is enough: fewer
-   interpolate worse there, and what more of them miss beyond the band's edges grows with the weights of the record's
-   ends. */
+/* Of an image that is resampled, and of the record by the range transform. With 8 taps the lesser one is enough. Fewer
+   taps interpolate worse there; with more, the error by the missing bins beyond the band's edges grows with the weights
+   of the record's ends. */
 #define WK_OVERSAMPLING       1.5
 #define WK_OVERSAMPLING_LEAST 1.25
 
@@ -58,7 +58,7 @@ struct wk_patch {
     struct grid grid; /* as wanted */
     struct grid own;  /* focused, in the plan's own axes: the same pixels, or a finer grid to resample */
     bool resampled;
-    double kx_carrier; /* rad/m: taken off before resampling, else 0 */
+    double kx_carrier; /* rad/m: removed before resampling, else 0 */
     long long bin_carrier;
     int length; /* of the range IFFT: Ky = bin 2 pi/(length own.r_step) */
     size_t row; /* of its first row in `focused` */
@@ -98,7 +98,7 @@ struct wk {
     bool reversed;            /* the track runs towards -x: its last ping comes first */
     double squint, slope;     /* rad; the centroid is at Kx = slope K_R */
     double angle;             /* rad: of the own axes */
-    double sine[2], x_end[2]; /* of the angles off broadside that hold echoes; m from x_middle: the track's ends */
+    double sine[2], x_end[2]; /* of the angles off broadside with echoes; m from x_middle: the track's ends */
 
     /* range: bin k of the band is at fc + (band_first + k) fs/range_length; the sample `centre` is the origin */
     int range_length, centre;
@@ -112,7 +112,7 @@ struct wk {
     /* lines: line i is at kx_first + i kx_step (rad/m); unfolded: bin line_first + i of the transform */
     int lines, line_first;
     size_t line_stride;                /* lines rounded up to WK_TILE */
-    double kx_first, kx_step, kx_base; /* kx_base: rad/m, taken off ahead of the azimuth transform */
+    double kx_first, kx_step, kx_base; /* kx_base: rad/m, removed before the azimuth transform */
     bool skips;                        /* cells beyond the support are not worked on */
 
     int taps;

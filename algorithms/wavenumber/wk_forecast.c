@@ -1,5 +1,5 @@
 /* The forecast of omega-k (wk.h): range migration's, of a lone receiver at the transmitter, with the interpolations of
-   turned axes, and counts of what takes its time. */
+   turned axes, and counts for its time. */
 #include <math.h>
 
 #include "backprojection/traces.h"
@@ -8,10 +8,10 @@
 #include "range_migration/rma_conditions.h"
 #include "wavenumber/wk_engine.h"
 
-/* Padded less, what the record's ends leave beyond them depends on where targets are: no law. */
+/* Padded less, the error by the record's ends depends on the targets' places: no law. */
 static const double PADDED_LEAST = 1.25;
-/* What interpolation misses beyond the band's edges, where records are transformed with the lesser oversampling:
-   measured, 1e-4 to 8e-4. */
+/* Error of interpolation beyond the band's edges, where records are transformed with the lesser oversampling: measured,
+   1e-4 to 8e-4. */
 static const double EDGES = 8e-4;
 static const double EDGE_BINS = 1; /* at either end of the band, that are interpolated from zeros beyond: measured */
 /* Rounding, relative L2: of the transforms. */
@@ -35,7 +35,7 @@ static double interpolations_error(const struct wk *wk)
 static enum status errors_fill(const struct wk *wk, struct forecast *forecast)
 {
     struct straight_track track;
-    acquisition_is_straight(wk->problem.acquisition, &track); /* as wk_conditions holds */
+    acquisition_is_straight(wk->problem.acquisition, &track); /* as wk_conditions requires */
     struct rma_view view = wk_view_of(&wk->problem, &track);
     double lost;
     view.slope = wk->slope;
@@ -68,7 +68,7 @@ enum status wk_forecast(const struct problem *problem, const void *method, const
     return status;
 }
 
-/* What a bin takes, in bins that range migration focuses: measured. Rotation, without taps and for each of them; Stolt
+/* Cost of a bin, in bins that range migration focuses, measured: rotation, without taps and for each tap; Stolt
    interpolation of up to eight taps, which take one vector, and of more; the transform onto rows. */
 static const double ROTATED = 0.3, ROTATED_TAP = 1.0 / 12, STOLT[] = {1.9, 2.6}, FOCUSED = 0.55;
 

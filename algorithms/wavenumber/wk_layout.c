@@ -1,5 +1,5 @@
-/* What an omega-k image needs of its scene (wk_engine.h): the track, the conditions, the axes and the lengths of all
-   transforms. All in double; nothing of it depends on the echoes. */
+/* The layout of an omega-k image for a scene (wk_engine.h): the track, the conditions, the axes and the lengths of all
+   transforms. All in double and independent of the echoes. */
 #include <limits.h>
 
 #include "common/fft_length.h"
@@ -12,7 +12,7 @@ static const double EVEN = 1e-12;      /* relative: columns that divide the peri
 static const double SAME_ANGLE = 1e-9; /* rad */
 static const int tap_counts[] = {4, 6, 8, 12, 16};
 
-/* Whole numbers of bins and cells: what is whole but for rounding, in any of its modes, counts as whole. */
+/* Whole numbers of bins and cells: a value that is whole up to rounding, in any mode, counts as whole. */
 static double whole_below(double x)
 {
     return floor(x + 1e-9);
@@ -43,7 +43,7 @@ static enum status lay_track(struct wk *wk)
 {
     const struct acquisition *a = wk->problem.acquisition;
     struct straight_track track;
-    acquisition_is_straight(a, &track); /* as wk_conditions holds */
+    acquisition_is_straight(a, &track); /* as wk_conditions requires */
     wk->sound_speed = a->sound_speed;
     wk->speed = track.speed;
     wk->fc = a->fc;
@@ -67,7 +67,7 @@ static enum status lay_track(struct wk *wk)
     return STATUS_OK;
 }
 
-/* ---- what is seen ---- */
+/* ---- view ---- */
 
 struct place {
     double x, r; /* m, in the track's axes, from x_middle */
@@ -97,7 +97,7 @@ static enum status lay_range(struct wk *wk)
         return status;
     const double reach =
         fmax(-wk->x_end[0], wk->x_end[1]) * 2 * wk->fs / wk->sound_speed; /* samples, along the track */
-    /* A point on the beam's axis at r' is heard after 2 (r' - X sin) (1 + beta sin)/(c (1 - beta^2)). */
+    /* The echo of a point on the beam's axis at r' arrives after 2 (r' - X sin) (1 + beta sin)/(c (1 - beta^2)). */
     const double sine = sin(wk->angle), beta = wk->speed / wk->sound_speed;
     wk->drift = sine * (1 + beta * sine) / ((1 - beta) * (1 + beta));
     wk->record_pad = reach * fabs(wk->drift);
@@ -134,14 +134,14 @@ static double pulse_edge(const struct wk *wk, int end)
     return end ? fmin(edge, band_edge(wk, 1)) : fmax(edge, band_edge(wk, 0));
 }
 
-/* Tangents, in the own axes, of the angles that hold echoes. */
+/* Tangents, in the own axes, of the angles with echoes. */
 static void own_tangents(const struct wk *wk, double tangent[2])
 {
     for (int k = 0; k < 2; k++)
         tangent[k] = tan(fmin(fmax(asin(wk->sine[k]) - wk->angle, -1.5), 1.5));
 }
 
-/* Along the own azimuth, at the own range r: what holds echoes. */
+/* The extent of echoes along the own azimuth, at the own range r. */
 static void own_extent(const struct wk *wk, double r, double extent[2])
 {
     double tangent[2], cosine = cos(wk->angle), sine = sin(wk->angle);
@@ -156,7 +156,7 @@ static void own_extent(const struct wk *wk, double r, double extent[2])
         }
 }
 
-/* The shortest period of the own azimuth that lets nothing wrap around onto a pixel. */
+/* The shortest period of the own azimuth without echoes that wrap around onto a pixel. */
 static double own_period(const struct wk *wk)
 {
     double period = 0;
@@ -180,7 +180,7 @@ static enum status too_long(const struct wk *wk, double period)
                       wk->method.name, wk->spacing, period);
 }
 
-/* Lines over all of Kx that the pings hold: the centroid +- pi/spacing at each frequency. */
+/* Lines over all Kx of the pings: the centroid +- pi/spacing at each frequency. */
 static enum status lay_unfolded(struct wk *wk)
 {
     double half = M_PI / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk) / wk->spacing + 1;
@@ -215,8 +215,8 @@ static enum status lay_unfolded(struct wk *wk)
     return STATUS_OK;
 }
 
-/* Lines over Kx0 as far as |Kx - K_R slope| <= pi/spacing reaches, at the edges of the band; their spacing needs only
-   to tell the image's own period, the azimuth transform is padded for the interpolation. */
+/* Lines over Kx0 as far as |Kx - K_R slope| <= pi/spacing reaches, at the edges of the band; their spacing follows from
+   the image's own period alone; the azimuth transform is padded for the interpolation. */
 static enum status lay_rotated(struct wk *wk)
 {
     double half = M_PI / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk);
@@ -242,8 +242,8 @@ static enum status lay_rotated(struct wk *wk)
 
 /* ---- patches ---- */
 
-/* What is focused for a patch: the same pixels where its axes are the plan's; a grid around it that samples the
-   spectrum WK_OVERSAMPLING times where they are not. Steps of the latter need the lines: see lay_steps. */
+/* The grid focused for a patch: the same pixels where its axes are the plan's; else a grid around it that samples the
+   spectrum WK_OVERSAMPLING times. Steps of the latter need the lines: see lay_steps. */
 static enum status lay_patches(struct wk *wk)
 {
     wk->patch_count = wk->problem.patch_count;

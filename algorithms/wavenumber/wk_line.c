@@ -13,7 +13,7 @@ enum {
     SPAN = WK_SPAN,
     PIECE = 4 * SPAN,  /* Ky bins that share a fit */
     FITTED_LEAST = 16, /* fewer are as fast without one */
-    ROWS_AHEAD = 16,   /* that are fetched: they lie too far apart for the processor to do so */
+    ROWS_AHEAD = 16,   /* prefetched: they lie too far apart for the processor to do so */
     TAPS_MOST = 16
 };
 
@@ -98,7 +98,8 @@ static inline __attribute__((always_inline)) void rotate_run(const struct wk *wk
 /* Where cell k of a line reads: bins of the azimuth transform; beyond all of them where evanescent. */
 struct rotation {
     double f_first, f_step;                    /* rad/m: K_R of the band */
-    double square, cross, kx2, tilt;           /* of the root: f^2 square - f cross - kx2; f tilt is taken off it */
+    double square, cross, kx2, tilt;           /* of the root: f^2 square - f cross - kx2; f tilt is subtracted from
+                                                  it */
     double per_b1, sine, slope, along, per_kx; /* along: of Kx cos */
     double nowhere;
 };
@@ -132,7 +133,7 @@ static struct rotation rotation_of(const struct line *l)
 }
 
 /* Azimuth bins of `count` cells from k on and how far beyond them, by a fit or (NULL) exactly. Half a transform off the
-   centroid nothing lies: `nowhere`. */
+   centroid there is no signal: `nowhere`. */
 static void rotation_places(const struct rotation *r, const struct fit *fit, int k, int count, double half,
                             double *restrict place, real *restrict u)
 {
@@ -201,7 +202,7 @@ static inline __attribute__((always_inline)) void interpolate(const struct line 
                 sum[k] += weight * lanes_load(x + t);
             }
         }
-        /* Each vector holds parts of one cell's sum: two halve to one, until one holds all cells. */
+        /* Each vector has parts of one cell's sum: pairs are added into one, until one vector has all cells. */
         for (int left = COMPLEX_LANES / 2; left > 0; left /= 2)
             for (int k = 0; k < left; k++)
                 sum[k] = COMPLEX_EVEN(sum[2 * k], sum[2 * k + 1]) + COMPLEX_ODD(sum[2 * k], sum[2 * k + 1]);
@@ -215,7 +216,7 @@ struct bins {
     double h, h_step, kappa, kappa_step; /* Hz: c/4pi times Kx and Ky in the track's axes, at j = 0 and for each j */
     double to_place, place;              /* of the frequency above fc: bins of the cells */
     double to_row, row, to_centre;       /* cycles of j at the first row, less the carrier's; s, the samples' origin */
-    double weight;                       /* of the cell: all that does not change along Ky */
+    double weight;                       /* of the cell: all factors constant along Ky */
 };
 
 static inline __attribute__((always_inline)) struct fit_cell bin_exact(const void *of, double j)
@@ -324,7 +325,7 @@ static void focus(struct line *l, const struct wk_patch *patch, complex_real *st
     stage_end(l, WK_FOCUS);
 }
 
-/* Every buffer begins on a line of the cache. */
+/* Every buffer begins at a line of the cache. */
 static real *aligned(real *memory)
 {
     return (real *)(((uintptr_t)memory + WK_ALIGNMENT - 1) / WK_ALIGNMENT * WK_ALIGNMENT);
@@ -334,7 +335,7 @@ void REAL_ISA_NAME(wk_line)(const struct wk *wk, int thread, int first, double s
 {
     struct line l = {.wk = wk, .seconds = seconds, .mark = clock_monotonic()};
     const size_t cells = (size_t)wk->band + 2 * WK_GUARD;
-    l.wave = (real *)((char *)wk->scratch + (size_t)thread * wk->scratch_bytes); /* as FFTW was told: aligned */
+    l.wave = (real *)((char *)wk->scratch + (size_t)thread * wk->scratch_bytes); /* aligned as for FFTW's plan */
     size_t longest = 0;
     for (int k = 0; k < wk->patch_count; k++)
         longest = (size_t)wk->patches[k].length > longest ? (size_t)wk->patches[k].length : longest;

@@ -35,7 +35,7 @@ static void multiply_by(real *restrict out, const real *restrict a, int count)
     }
 }
 
-/* The weight of ranges: sqrt(r), r the track's. A resampled patch has it taken afterwards. */
+/* The weight of ranges: sqrt(r), r the track's. A resampled patch gets it afterwards. */
 static void scale(const struct wk_patch *patch, int i, real *restrict out)
 {
     const double r = grid_point(&patch->grid, i, 0).y, step = grid_point(&patch->grid, i, 1).y - r;

@@ -51,7 +51,7 @@ static void azimuth_kernel_fill(struct wk *wk)
         }
 }
 
-/* 1 over the kernel's transform; held where nothing lies. */
+/* 1 over the kernel's transform; constant outside of the samples. */
 static double weight_at(const struct wk_kernel *kernel, double place, double most)
 {
     return 1 / kaiser_transform(kernel->taps, kernel->shape, fmin(fabs(place), most));
@@ -112,7 +112,7 @@ static size_t column_stride(const struct wk *wk)
     return (((size_t)wk->azimuth_length + line - 1) / line | 1) * line;
 }
 
-/* What a thread needs in turn: a record and its transform; a strip of the azimuth transform; a line with its rows. */
+/* A thread's memory, in turn: a record and its transform; a strip of the azimuth transform; a line with its rows. */
 static size_t scratch_size(const struct wk *wk)
 {
     size_t complex_count = (size_t)wk->samples + (size_t)wk->range_length, strip = STRIP * column_stride(wk);
@@ -239,8 +239,8 @@ static void range(const struct wk *wk, const void *samples)
     }
 }
 
-/* Rows lie too far apart for the processor to see that they follow each other: the strip of one some `left` rows
-   ahead. */
+/* Prefetch the strip STRIP_AHEAD rows ahead, with `left` rows to come: rows lie too far apart for the processor's own
+   prefetch. */
 static inline void strip_fetch(const complex_real *strip, size_t row, int left)
 {
     const char *ahead = (const char *)(strip + STRIP_AHEAD * row);
@@ -250,8 +250,8 @@ static inline void strip_fetch(const complex_real *strip, size_t row, int left)
     __builtin_prefetch(ahead + WK_ALIGNMENT);
 }
 
-/* Azimuth FFT over the pings, which stand in rows 0 to pings - 1, and the zeros between and after them. Column by
-   column: FFTW's estimate is several times slower for columns side by side. */
+/* Azimuth FFT over the pings, in rows 0 to pings - 1, and the zeros between and after them. Column by column: FFTW's
+   estimate is several times slower for columns side by side. */
 static void azimuth(const struct wk *wk)
 {
     const int strips = wk->row / STRIP;

@@ -6,7 +6,7 @@
 #include "backprojection/factorised/tree.h"
 #include "backprojection/general/lines.h"
 
-/* What one thread needs to itself. */
+/* Scratch of one thread. */
 struct factorised_scratch {
     void *interleaved;            /* complex [bp_record_values] */
     struct vector *tx, *velocity; /* [base] pings of a subaperture in the axes of a ray */
@@ -59,12 +59,12 @@ enum status factorised_cost_direct(const struct problem *problem, const struct f
 /* A lower bound of the cost of images of subapertures in place of `pairs`, in pairs: each pixel reads an image, and
    some lines of an image read each record. */
 double factorised_least(const struct problem *problem, double pairs);
-/* The forecast of settings whose cost is known. Errors: STATUS_FAILED without memory. */
+/* The forecast of settings with a given cost. Errors: STATUS_FAILED without memory. */
 enum status factorised_forecast(const struct problem *problem, const struct tree_settings *settings,
                                 const struct factorised_cost *cost, struct forecast *forecast);
 
-/* stages >= 1. Errors: as factorised_cost, and STATUS_UNSUPPORTED for records that are too long. *out is NULL on error.
-   */
+/* stages >= 1. Errors: as factorised_cost, and STATUS_UNSUPPORTED for records that are too long. *out is NULL on
+   error. */
 enum status factorised_plan(const struct problem *problem, const struct tree_settings *settings,
                             struct factorised **out);
 /* Fill needed, direct and add to flops, line by line. The images' part of factorised_plan. */

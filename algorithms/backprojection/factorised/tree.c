@@ -11,7 +11,7 @@
 #include "common/pulse_band.h"
 
 /* Steps of range, over a record's samples c/(2 fs), at most: runs of pixels are fastest below one sample a pixel
-   (general/run.h), of a level's image as of the one that it is made of. */
+   (general/run.h), of a level's image as of its parts' images. */
 static const double STEP_MOST = 0.93, STEP_NEXT = 0.975;
 static const double RATE_LEAST = 10;   /* lines a unit of s: a single ping would need almost none */
 static const double ANGLE_LEAST = 1.1; /* oversampling */

@@ -72,7 +72,7 @@
                                          (BP_INTERVAL_BITS), sample = the others; rest = fraction 2^-19
        phase in cycles        FIXED_32   low word as a signed number, times 2^-32: -1/2 to 1/2, whole cycles drop out
 
-   13 bits are -4096 to 4095 points: run.base is taken off, and a run spans at most POINTS_MOST points, but for cubics.
+   13 bits are -4096 to 4095 points: run.base is subtracted, and a run spans at most POINTS_MOST points, but for cubics.
    Half a step is added before (scale.shift) where positions are rounded to the nearest step, as cutting bits off is
    floor. */
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_RUN_H

@@ -154,11 +154,11 @@ INLINE void flatten(double (*quintic)[GROUP_RECEIVERS], const struct scale *scal
 }
 
 /* Points of a run that bends little for BP_BRANCHES: fixed-point numbers of 23 bits of fraction along the line, which
-   are counted on, and what bend and rounded step add in float. */
+   are counted on, plus the bend and the step's rounding in float. */
 struct ladder {
     vector_unsigned point;
     unsigned step;                    /* of a vector */
-    real points_a_cycle, points_left; /* 2^-23: bend of a cycle, and what the step leaves out for each pixel */
+    real points_a_cycle, points_left; /* 2^-23: bend of a cycle, and the step's rounding for each pixel */
 };
 
 INLINE struct ladder ladder_make(const struct flat *flat, int g, const struct scale *scale, double begin, double middle)

@@ -19,7 +19,7 @@ struct delay_terms {
     bool slow; /* the first form will do */
 };
 
-/* What all receivers share. */
+/* Shared by all receivers. */
 struct row_tables {
     int group_count; /* in scratch->groups, and one more group that ends the last */
     int pieces;      /* in scratch->pieces; 0: each delay is evaluated */
@@ -58,8 +58,8 @@ void DELAYS_RECEIVER(const struct bp_row *row, const struct row_tables *tables, 
 #define DELAYS_MAKE REAL_ISA_NAME(bp_delays_make)
 void DELAYS_MAKE(const struct row_tables *tables, double offset, const struct chunk *chunk);
 
-/* Divide the row's residues into groups whose sizes differ by one at the most, and tabulate what all receivers share.
-   */
+/* Divide the row's residues into groups whose sizes differ by one at the most, and tabulate what all receivers
+   share. */
 #define TABLES_BEGIN REAL_ISA_NAME(bp_tables_begin)
 struct row_tables TABLES_BEGIN(const struct bp_row *row);
 

@@ -339,8 +339,8 @@ INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entr
     }
 }
 
-/* In pairs of residues, one or two taps: each second entry with samples other than the first one's is summed by itself.
-   */
+/* In pairs of residues, one or two taps: each second entry with samples other than the first one's is summed by
+   itself. */
 INLINE void sum_apart(const struct chunk *chunk, int taps)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;

@@ -36,8 +36,8 @@ static inline double apex_slack(double pixel, double transmitter)
 int pair_spans(const struct acquisition *acquisition, int ping, struct vector normal, const struct pixel_line *line,
                struct pair_span spans[2]);
 
-/* Pixels of `within`, which holds one at least, whose delay lies inside the record of one receiver: at most two spans,
-   in rising order; returns their count. */
+/* Pixels of `within` (not empty) whose delay lies inside the record of one receiver: at most two spans, in rising
+   order; returns their count. */
 int record_spans(const struct acquisition *acquisition, int ping, int receiver, const struct pixel_line *line,
                  struct pair_span within, struct pair_span spans[2]);
 

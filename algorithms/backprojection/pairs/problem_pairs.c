@@ -18,8 +18,8 @@ static double receivers_apart(const struct acquisition *a, int ping)
 }
 
 /* Bounds of the delays between `line` and a ping, by the nearest and the furthest pixel: a path is twice the
-   transmitter's distance, up to the receiver's distance from the transmitter: `apart` m, and its motion since emission.
-   */
+   transmitter's distance, up to the receiver's distance from the transmitter: `apart` m, and its motion since
+   emission. */
 struct delay_bounds {
     double least, most; /* s */
 };
@@ -73,8 +73,8 @@ static int stride_of(int count)
     return stride;
 }
 
-/* Each line once, the last one first: along x the aperture widens with the range, along r a ping sees only some lines.
-   */
+/* Each line once, the last one first: along x the aperture widens with the range, along r a ping sees only some
+   lines. */
 static bool ping_met(const struct problem *problem, int ping)
 {
     const struct acquisition *a = problem->acquisition;

@@ -3,7 +3,7 @@
 
 #include "range_migration/rma_engine.h"
 
-static const double EVEN = 1e-10; /* wavelengths: how far off even places may be */
+static const double EVEN = 1e-10; /* wavelengths: tolerance of even places */
 
 /* Is every receiver a whole multiple of 2 |spacing|/periods ahead of the first? */
 static bool even(const struct rma *rma, double pitch)

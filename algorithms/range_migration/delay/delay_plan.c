@@ -33,7 +33,7 @@ static void run_delays(const struct rma *rma, const struct rma_swath *swath, int
     }
 }
 
-/* What a cut's ends fade by, and zero outside of it. */
+/* The taper at a cut's ends, and zero outside of it. */
 static double fade(const struct rma *rma, const struct rma_swath *swath, int sample)
 {
     const real *tapers = rma->tapers;
@@ -57,7 +57,7 @@ static void run_fill(const struct rma *rma, const struct rma_swath *swath, int r
     const double first = from + whole + 1 - taps / 2;
     const double place = first - rma->from;
     bool inside = place >= -rma->delay->guard && place + RMA_RUN + taps <= rma->held + rma->delay->guard;
-    /* What is held of the record reaches as far as taps do, or to the record's own end. */
+    /* The stored part of the record reaches as far as the taps, or to the record's own end. */
     assert(swath->end == swath->begin || rma->from == 0 || place >= 0);
     assert(swath->end == swath->begin || rma->from + rma->held == rma->samples || place + RMA_RUN + taps <= rma->held);
     map->first[at] = inside ? (int)place + rma->delay->guard : INT_MIN;
@@ -74,7 +74,7 @@ static void run_fill(const struct rma *rma, const struct rma_swath *swath, int r
     }
 }
 
-/* U at the edges of the row's vectors, where the echo of range r arrives with each angle of the table. */
+/* U at the edges of the row's vectors, at the arrival of the echo of range r for each angle of the table. */
 static void edges_fill(const struct rma *rma, const struct rma_swath *swath)
 {
     const struct delay_terms *terms = &rma->delay->terms;

@@ -59,8 +59,8 @@ static void edges_fill(const struct workspace *w, double nu, double cycles, real
     }
 }
 
-/* Receivers at one vector of samples, turned, weighted and added up over those of equal number modulo fold; of an even
-   fold then the sums of those half of it apart, and their differences. */
+/* Receivers at one vector of samples: turned, weighted and summed over equal numbers modulo fold. With an even fold,
+   then sums and differences of those fold/2 apart. */
 static inline __attribute__((always_inline)) void partial_sums(const struct group *g, const real *x, const real *turns,
                                                                int terms, vec sums[RMA_FOLD][DELAY_TERMS][2])
 {
@@ -137,7 +137,7 @@ static inline __attribute__((always_inline)) void group_add(const struct group *
     const size_t row = 2 * (size_t)g->swath->row;
     for (int block = 0; block < blocks; block++) {
         const real *x = g->data + 2 * (size_t)block * LANES;
-        for (int m = 0; m < g->rma->receivers; m++) { /* more streams than the processor follows by itself */
+        for (int m = 0; m < g->rma->receivers; m++) { /* more streams than the processor prefetches itself */
             __builtin_prefetch(x + (size_t)m * row + 2 * LANES);
             __builtin_prefetch(x + (size_t)m * row + 3 * LANES);
         }

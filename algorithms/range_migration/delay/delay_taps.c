@@ -1,5 +1,5 @@
-/* Fractional delays by taps of least squares (delay_compensation.h): of all weights those whose error over the
-   compressed pulse's own energy spectrum is least. */
+/* Fractional delays by taps of least squares (delay_compensation.h): the weights with the least error over the
+   compressed pulse's own energy spectrum. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,9 +9,9 @@
 #include "common/pulse_band.h"
 #include "range_migration/delay_compensation.h"
 
-static const double FLOOR = 1e-7; /* of the energy lies evenly over all frequencies: weights stay small everywhere */
+static const double FLOOR = 1e-7; /* of the energy, spread evenly over all frequencies: weights stay small everywhere */
 
-enum { BINS = 512, RECEIVERS = 32 /* whose delays are looked at, at most */ };
+enum { BINS = 512, RECEIVERS = 32 /* whose delays are tested, at most */ };
 
 static double frequency_of(int bin)
 {
@@ -47,7 +47,7 @@ static enum status spectrum_fill(const struct acquisition *a, double energy[BINS
     return STATUS_OK;
 }
 
-/* Real part of the mean of exp(j 2 pi f x) over the energy, and its slope over x. The pulse's spectrum is taken as
+/* Real part of the mean of exp(j 2 pi f x) over the energy, and its slope over x. The pulse's spectrum is assumed
    even. */
 static double correlation(const double energy[BINS], double x, double *slope)
 {
@@ -102,8 +102,8 @@ double delay_taps_error(const struct acquisition *acquisition, int taps)
     return normal_make(acquisition, taps, &normal) == STATUS_OK ? weights_solve(&normal, 0.5, weights, slopes) : NAN;
 }
 
-/* The error half-way between two samples, of the frequencies that are kept: without the floor, and without the flanks
-   that are cut off. The weights are even about the middle. */
+/* The error half-way between two samples, over the frequencies kept: without the floor and the cut flanks. The weights
+   are even about the middle. */
 static double middle_error(const struct normal *normal, double half, const double weights[DELAY_TAPS])
 {
     double left = 0;

@@ -9,13 +9,13 @@
 enum {
     ANGLES = 65, /* of the table; the residual is smooth: cubics between them leave 1e-6 rad */
     RANGES = 33,
-    EVERY = 4,   /* of them serves to find the principal vectors */
-    OFFSETS = 9, /* at which the residual is computed, a polynomial of them between */
+    EVERY = 4,   /* of them is used to find the principal vectors */
+    OFFSETS = 9, /* at which the residual is computed; a polynomial between them */
     ROUNDS = 30  /* of the subspace iteration */
 };
 static const double WIDEST = 1.4; /* rad */
 
-/* Residual phases at one angle and range: at few offsets, and from there at all receivers. */
+/* Residual phases at one angle and range: at OFFSETS offsets, then interpolated to all receivers. */
 struct offsets {
     int count, receivers;
     double at[OFFSETS];
@@ -91,7 +91,7 @@ static double angle_of(const struct spectrum_setting *setting, double nu)
     return asin(fmin(fmax(c * nu / 2 / f + beta, -1), 1));
 }
 
-/* Rows, and the angles that are focused: rma_line leaves out what lies beyond. */
+/* Rows, and the angles that are focused: rma_line leaves out others. */
 static void extent(const struct rma_view *view, struct delay_terms *terms)
 {
     const struct problem *problem = view->problem;
@@ -107,7 +107,7 @@ static void extent(const struct rma_view *view, struct delay_terms *terms)
     double from = fmax(-widest, angle_of(&view->setting, -full)), to = fmin(widest, angle_of(&view->setting, full));
     terms->angle_first = from;
     terms->angle_step = (to - from) / (ANGLES - 1);
-    /* What arrives with the rows' widest angle is a row farther away, broadside. */
+    /* The echo of a row at the widest angle arrives like that of a farther row at broadside. */
     double walk = fmax(spectrum_walk(&view->setting, wavenumber(&view->setting, from)),
                        spectrum_walk(&view->setting, wavenumber(&view->setting, to)));
     terms->inverse_first = 1 / (1.05 * farthest * walk);
@@ -217,7 +217,7 @@ static bool basis_make(const struct rma_view *view, const struct offsets *offset
     return count > 0;
 }
 
-/* Extent and basis. False without memory; offsets->weights and the terms are to be freed in any case. */
+/* Extent and basis. False without memory; free offsets->weights and the terms in any case. */
 static bool terms_begin(const struct rma_view *view, int count, struct delay_terms *terms, struct offsets *offsets)
 {
     const int receivers = view->problem->acquisition->receivers;
@@ -272,7 +272,7 @@ void delay_terms_free(struct delay_terms *terms)
 
 /* ---- the table ---- */
 
-/* The first of four nodes about a place, held inside the table, and Lagrange's weights. */
+/* The first of four nodes about a place, limited to the table, and Lagrange's weights. */
 static int cubic(double place, int count, double weights[4])
 {
     place = fmin(fmax(place, 0), count - 1);
