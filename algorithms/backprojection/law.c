@@ -12,7 +12,7 @@
 
 enum { FRACTIONS = 32, IN_A_STEP = 4 };
 
-/* Of one frequency, over the fractions: of H - 1. */
+/* Mean of H - 1 and of its square at one frequency, over the fractions. */
 struct moments {
     double complex mean;
     double squares;
@@ -58,7 +58,7 @@ static double end_energy(double rho, double d)
     return d < whole ? d : whole + share * share / 3 * (1 / pow(whole, 3) - 1 / pow(d, 3));
 }
 
-/* Its mean over distances between a and b, of which those below 0 are left out and those beyond `reach` add nothing. */
+/* Mean energy over distances between a and b, without those below 0; those beyond `reach` add nothing. */
 static double end_mean(double rho, double reach, double a, double b)
 {
     const double near = fmax(fmin(a, b), 0), far = fmax(fmax(a, b), near + 1e-3);

@@ -43,7 +43,7 @@ struct traces_shape {
     double bytes;   /* memory with one thread */
 };
 
-/* Of each precision, whose values records and rows have. */
+/* The functions of each precision, that of records and rows. */
 struct traces_build {
     /* `period` of the shape without a plan; 0 where it is too long. */
     int (*period)(const struct acquisition *acquisition, const struct traces_form *form);

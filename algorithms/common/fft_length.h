@@ -9,7 +9,7 @@ int fft_length(long long n);
 int fft_length_fast(long long n);
 
 /* The length of the quickest transform of n or more values, up to a quarter longer than the last: most often a power of
-   two, or five times one. Only where nothing but the transforms grows with the length. */
+   two, or five times one. For work of transforms alone: all other work grows with the length. */
 int fft_length_quick(long long n);
 
 /* Seconds a FLOP of a transform of n, over those of a short power of two: 1 to 6, by its prime factors and its length.

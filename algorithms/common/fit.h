@@ -12,7 +12,7 @@ enum { FIT_DEGREE = 5 };
    c[power] = sum over n of powers[power][n] value[n]. */
 void fit_nodes_fill(int count, double nodes[count], double powers[count][count]);
 
-/* Of degree FIT_DEGREE. */
+/* Nodes and powers of degree FIT_DEGREE. */
 struct fit_nodes {
     double nodes[FIT_DEGREE + 1];
     double powers[FIT_DEGREE + 1][FIT_DEGREE + 1];

@@ -75,7 +75,7 @@ void *memory_columns(size_t alignment, size_t bytes)
     return memory;
 }
 
-/* Its size is kept in a page ahead of it. */
+/* A page ahead of the memory stores its size. */
 void *memory_sparse(size_t bytes)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE), all = bytes + page;

@@ -54,8 +54,8 @@ void acquisition_free(struct acquisition *acquisition);
    1e-3). `place` (a file name) begins the message. Errors: STATUS_INVALID. */
 enum status acquisition_check(const struct acquisition *acquisition, const char *place);
 
-/* A copy, freed by the caller, in axes turned by `angle` (rad) about the origin: x' = x cos - y sin, y' = x sin + y
-   cos. Errors: STATUS_FAILED without memory. */
+/* A copy, freed by the caller, in axes turned by `angle` (rad) about the origin: x' = x cos - y sin,
+   y' = x sin + y cos. Errors: STATUS_FAILED without memory. */
 enum status acquisition_turn(const struct acquisition *acquisition, double angle, struct acquisition *out);
 
 /* Unit vector along the track at ping p: the difference of the neighbouring transmitter positions; the velocity's

@@ -164,7 +164,7 @@ double condition_along(struct vector axis, struct vector from, struct vector to)
     return dot(difference(to, from), axis);
 }
 
-/* From one ping to another; where they are at one place, acquisition_heading there. */
+/* Unit vector from one ping to another; acquisition_heading where they are in one place. */
 static struct vector axis_between(const struct acquisition *a, int first, int last)
 {
     const struct vector way = difference(a->tx[last], a->tx[first]);

@@ -38,7 +38,7 @@ static int centres_count(const struct acquisition *a, double period, double apar
     return count - (period > 0 && count > 1 && first + period - last < apart);
 }
 
-/* Those that sample the track: half of an even step counts as one place. */
+/* Phase centres that sample the track: those within half of an even step count as one place. */
 static int centres_sampling(const struct acquisition *a, double spacing)
 {
     return centres_count(a, fabs(spacing), fabs(spacing) / a->receivers / 2, NULL);

@@ -71,7 +71,7 @@ static void spread_add(const struct acquisition *a, const struct grid *g, struct
         }
 }
 
-/* Of a patch. */
+/* Places of a patch. */
 struct counts {
     int places, met, unseen, cut;
 };

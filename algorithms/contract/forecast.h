@@ -18,7 +18,7 @@ enum cause {
 };
 extern const char *const cause_names[CAUSES];
 
-/* How a pair's value is read: its time depends on it. */
+/* How a pair's value is read, which decides its time. */
 enum reading_kind { READ_NEAREST, READ_LINE, READ_TAPS, READ_BRANCHES, READ_KINDS };
 
 /* Parts of range migration's cost. */
@@ -53,12 +53,12 @@ struct forecast {
     double image_cost; /* in pairs */
     double image_flops;
     double image_pairs;
-    /* Of range migration, by algorithm.h's `cost`: */
+    /* Counts of range migration, by algorithm.h's `cost`: */
     double migration[MIGRATIONS];
     double migration_flops; /* that are counted, all of them */
 };
 
-/* Of all causes: the root of the sum of squares. */
+/* The error by all causes: the root of the sum of squares. */
 double forecast_error(const struct forecast *forecast);
 /* The cause with the greatest error. */
 enum cause forecast_cause(const struct forecast *forecast);

@@ -68,9 +68,9 @@ struct delay_taps {
 
 /* STATUS_FAILED without memory. */
 enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made);
-/* Their error, relative L2 of the pulse, half-way between two samples; NAN without memory. */
+/* The taps' error, relative L2 of the pulse, half-way between two samples; NAN without memory. */
 double delay_taps_error(const struct acquisition *acquisition, int taps);
-/* Their error in an image, relative L2, for its receivers' delays and frequencies up to `half` cycles a sample; it
+/* The taps' error in an image, relative L2, for its receivers' delays and frequencies up to `half` cycles a sample; it
    grows as sin(pi fraction). NAN without memory. */
 double delay_taps_expected(const struct rma_view *view, int taps, double half);
 /* Weights for the signal `fraction` samples (0 to 1) after tap taps/2 - 1, and their slopes over it. */

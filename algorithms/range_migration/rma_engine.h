@@ -120,7 +120,7 @@ struct rma_line {
     double slowness;     /* s/m: delay over range, (1/2 pi) dK/dF at fc */
 };
 
-/* Of a swath by the transform that the Stolt interpolation reads. */
+/* Oversampling of a swath by the transform that the Stolt interpolation reads. */
 #define RMA_OVERSAMPLING 1.5
 
 struct rma_patch {
@@ -252,7 +252,7 @@ struct rma {
 /* Fills everything but the tables of delay compensation and the pointers that rma_transform's plan fills. The
    requirements of rma_requirements_check must be met. */
 enum status rma_layout(struct rma *rma);
-/* Those tables. */
+/* The tables of delay compensation. */
 enum status rma_delay_tables(struct rma *rma);
 /* Samples over which a cut of the records tapers. */
 int rma_taper(const struct acquisition *acquisition);

@@ -201,7 +201,7 @@ enum status rma_forecast(const struct problem *problem, const void *given, const
     acquisition_is_straight(problem->acquisition, &track);
     const struct rma_view view = rma_view_of(problem, &method, &track);
     status = band_of(&view, 0, &band);
-    /* Where B = fs, the bin at fs/2 is both ends of the band: no law. */
+    /* No law at B = fs: the bin at fs/2 is both ends of the band. */
     forecast->error[CAUSE_SPECTRUM] =
         problem->acquisition->bandwidth < problem->acquisition->fs ? sqrt(band.lost) : INFINITY;
     for (int k = 0; k < count; k++)

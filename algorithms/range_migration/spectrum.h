@@ -1,9 +1,9 @@
 /* The phase of one pair's two-dimensional echo spectrum: range frequency by azimuth wavenumber (LBF21 section III).
 
    Units: offset d of the receiver ahead of the transmitter (m), the target's range r (m, > 0), F = fc + f_tau the
-   absolute frequency (Hz, > 0), azimuth wavenumber nu in cycles a metre of track. The papers' Doppler frequency is f =
-   v nu; in nu nothing divides by the speed, so that a platform that stops and hops (v = 0) is no special case. Result:
-   radians, of a unit target at azimuth 0; a target at x adds -2 pi nu x.
+   absolute frequency (Hz, > 0), azimuth wavenumber nu in cycles a metre of track. The papers' Doppler frequency is
+   f = v nu; in nu nothing divides by the speed, so that a platform that stops and hops (v = 0) is no special case.
+   Result: radians, of a unit target at azimuth 0; a target at x adds -2 pi nu x.
 
        sin theta = c nu/(2F),   S = sqrt(F^2 - (c nu/2)^2) = F cos theta,   Delta = d + 2 r v/(c cos theta)
 

@@ -34,9 +34,9 @@ enum {
     WK_TILE = 8          /* neighbouring lines whose rows are stored together */
 };
 #define WK_WIDEST_SINE 0.98 /* of the angles that are imaged: nearer to the track nothing is resolved in range */
-/* Of an image that is resampled, and of the record by the range transform. With 8 taps the lesser one is enough. Fewer
-   taps interpolate worse there; with more, the error by the missing bins beyond the band's edges grows with the weights
-   of the record's ends. */
+/* Oversampling of an image that is resampled, and of the record by the range transform. With 8 taps the lesser one is
+   enough. Fewer taps interpolate worse there; with more, the error by the missing bins beyond the band's edges grows
+   with the weights of the record's ends. */
 #define WK_OVERSAMPLING       1.5
 #define WK_OVERSAMPLING_LEAST 1.25
 

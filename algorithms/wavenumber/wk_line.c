@@ -228,7 +228,7 @@ static inline __attribute__((always_inline)) struct fit_cell bin_exact(const voi
                              b->weight * frequency / (root * sqrt(kappa))}; /* F/(kappa^1.5) dF/dKy */
 }
 
-/* Those of [low, high] Hz: from `first` to `last`. */
+/* The bins of [low, high] Hz: from `first` to `last`. */
 static struct bins bins_of(const struct line *l, const struct wk_patch *patch, long long *first, long long *last)
 {
     const struct wk *wk = l->wk;

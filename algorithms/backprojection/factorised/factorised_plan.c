@@ -65,7 +65,7 @@ static int places_most(const struct tree *tree)
     return most;
 }
 
-/* Of all threads in one block, so that its account is the same for any number of them. */
+/* Scratch of all threads in one block, so that its counted bytes are the same for any number of threads. */
 static void scratch_make(struct factorised *plan)
 {
     enum { PARTS = 7, LINE = 64 };

@@ -17,7 +17,7 @@ struct sector sector_of_pixels(const struct tree *tree, const struct subaperture
 /* The smallest sector that contains `part` and the grid of another subaperture. */
 struct sector sector_of_grid(const struct tree *tree, const struct subaperture *part, const struct subaperture *whole,
                              int view);
-/* Both. */
+/* The smallest sector that contains both. */
 struct sector sector_join(struct sector a, struct sector b);
 
 /* Raise step->rho and step->sine (samples a metre and a unit of s) to the needs of a sector's highest frequencies, and

@@ -27,7 +27,7 @@
 
 enum { STAGES_MOST = 6 }; /* levels of images */
 
-/* Of one subaperture, one patch and one side of its lines. */
+/* The polar grid of one subaperture, one patch and one side of its lines. */
 struct polar {
     int line_first, lines;   /* line n lies at s = (line_first + n) step; lines 0: no image */
     int place_first, places; /* place j at rho = (place_first + j) step */
@@ -56,7 +56,7 @@ struct subaperture {
     struct polar *polars; /* [views] in the tree's */
 };
 
-/* Of all grids of a level, one patch and one side. */
+/* Shared by all grids of a level, one patch and one side. */
 struct polar_step {
     double rho, sine;       /* m, 1 */
     int place_first, count; /* places of any subaperture */

@@ -86,7 +86,7 @@ double factorised_pairs(const struct factorised_cost *cost)
     return cost->records + BLOCK * cost->blocks + cost->images;
 }
 
-/* Of images, and lines through them. */
+/* Cost of images, and of lines through them. */
 static double flops_of(const struct tree *tree, const struct amounts *sum)
 {
     const struct polar_taps *range = &tree->range;

@@ -59,7 +59,7 @@ static bool inside_record(const struct bp_lines *lines, const struct ping_box *b
     return least >= t0 + slack && most <= last - slack;
 }
 
-/* Where a line's sums are. */
+/* The place of a line's sums. */
 struct line_sums {
     const struct pixel_line *line;
     void *re, *im;

@@ -81,8 +81,8 @@
 #include "backprojection/general/sum.h"
 #include "common/lanes.h"
 
-/* Vectors of float with instructions that no compiler makes of portable code: one permutes a window of four values, one
-   rounds a vector? */
+/* Are there vectors of float, with instructions that no compiler makes of portable code: to permute a window of four
+   values, to round a vector? */
 #if defined __AVX__ && !REAL_DOUBLE
 #define WINDOWS 1
 #else

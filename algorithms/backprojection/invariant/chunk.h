@@ -21,7 +21,7 @@ struct delay_terms {
 
 /* Shared by all receivers. */
 struct row_tables {
-    int group_count; /* in scratch->groups, and one more group that ends the last */
+    int group_count; /* in scratch->groups, with their part of the delays; one more group ends the last */
     int pieces;      /* in scratch->pieces; 0: each delay is evaluated */
     struct delay_terms terms;
     bool inside_record; /* proved for all of the row's delays */

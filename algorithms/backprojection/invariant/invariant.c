@@ -11,7 +11,7 @@
 
 enum { ROWS_SUMMED = 4 /* image rows of one task */ };
 
-/* Where a tile of pings goes in the slab. */
+/* The place of a tile of pings in the slab. */
 struct tile_place {
     int receiver, ping, count;
 };

@@ -103,7 +103,7 @@ static bool inside_record(const struct bp_row *row, const struct delay_terms *te
     const double r = row->r, t0 = row->raster->t0, c = medium->sound_speed, v = fabs(terms->v);
     const double first = t0 + medium->first / medium->fs, last = t0 + medium->last / medium->fs;
     const double leg = sqrt(distances.most * distances.most + r * r) / c, b = distances.most + offset + v * leg;
-    /* Of both ways together, or, as long as they end with the record, of each by itself. */
+    /* Bounds by both ways together, or, as they end with the record, by each of its own. */
     const double ahead = distances.least, behind = fmax(0, ahead - offset - v * fmax(0, last));
     const double least = fmax(fabs(r) / c + (sqrt(terms->er2) - v * b) * terms->one_e,
                               (sqrt(ahead * ahead + r * r) + sqrt(behind * behind + r * r)) / c);

@@ -19,7 +19,7 @@ double aperture_error(const struct problem *problem, double sine);
    a target sum other pings, so that side lobes of both apertures differ in phase, not in size alone. INFINITY without a
    law, and where pings lie so far apart that targets repeat: the echoes left out then appear beside them. */
 double aperture_planned(const struct problem *problem, double sine);
-/* Its inverse: the least sine with an error of at most `error`; 1 if no smaller sine has it. */
+/* The inverse of aperture_planned: the least sine with an error of at most `error`; 1 if no smaller sine has it. */
 double aperture_least(const struct problem *problem, double error);
 /* The inverse of the law: the least sine with an error of at most `error`; INFINITY without a law. */
 double aperture_sine(const struct problem *problem, double error);
