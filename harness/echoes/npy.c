@@ -67,7 +67,9 @@ static double complex number(const struct array *array, const unsigned char *fro
         both[0] = single[0];
         both[1] = single[1];
     }
-    return CMPLX(both[0], both[1]);
+    double complex value;
+    memcpy(&value, both, sizeof value);
+    return value;
 }
 
 static enum status numbers_read(FILE *stream, const char *path, const struct array *array, double complex *pixels)

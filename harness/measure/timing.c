@@ -86,7 +86,7 @@ struct trial {
 
 static void image_spoil(const struct image *image)
 {
-    const double complex spoilt = CMPLX(NAN, NAN);
+    const double complex spoilt = NAN + NAN * I;
     for (int k = 0; k < image->patch_count; k++) {
         float complex *single = image->pixels[k];
         double complex *both = image->pixels[k];
