@@ -3,6 +3,7 @@
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "choice/choice.h"
 #include "methods/automatic.h"
@@ -86,6 +87,7 @@ static bool grid_take(struct bytes *bytes, const struct acquisition *a, struct g
 /* Any settings within their bounds, but none beyond 16, for a few pixels shall not take seconds. */
 static void options_take(struct bytes *bytes, const struct algorithm *algorithm, void *options)
 {
+    memset(options, 0, algorithm->options_size); /* as a SPEC leaves what has no key */
     for (const struct param *param = algorithm->params; param && param->name; param++) {
         double most = fmin(param->max, fmax(16, param->initial)), share = take_byte(bytes) / 255.0;
         double value = share == 0 ? param->initial : param->min + (most - param->min) * share;
