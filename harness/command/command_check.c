@@ -15,7 +15,7 @@ enum status command_check(const struct task *task)
     char names[400] = "";
     int count = 0;
     if (!task->name_count && !task->echoes)
-        return status_set(STATUS_INVALID, "check: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
+        return status_set(STATUS_INVALID, "check: a SCENE, or --echoes FILE.mat, is missing");
     enum status status = task_scenes("check", task, 0, NULL, &scene, &count);
     if (status != STATUS_OK) {
         scenes_free(scene, count);

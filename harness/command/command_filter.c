@@ -55,7 +55,7 @@ static enum status check_usage(const struct task *task)
 
 /* The echoes to write: compressed, so without the pulse, and without the area, which is applied already. */
 static enum status filtered_write(const struct filtering *filtering, const struct echoes *from, const char *path,
-                                  const char *description, struct kept *all)
+                                  const struct echo_notes *notes, struct kept *all)
 {
     struct acquisition plain = *filtering->acquisition;
     struct echoes echoes;
@@ -71,7 +71,7 @@ static enum status filtered_write(const struct filtering *filtering, const struc
     plain.area = (struct target_area){0};
     echoes.acquisition = &plain;
     if (status == STATUS_OK)
-        status = echo_file_write(path, &echoes, description);
+        status = echo_file_write(path, &echoes, notes);
     echoes_free(&echoes);
     return status;
 }
@@ -81,13 +81,18 @@ static enum status source_filter(const struct task *task, const struct spec *spe
 {
     struct filtering filtering;
     struct kept all;
+    struct echo_notes notes = scene_notes(scene), read = {.description = NULL};
     enum status status = filtering_open(acquisition, spec, &filtering);
     if (status != STATUS_OK)
         return status;
-    if (!task->echoes)
-        status = scene_echoes(scene, echoes);
+    status = task->echoes ? echo_notes_read(task->echoes, &read) : scene_echoes(scene, echoes);
+    if (task->echoes) {
+        notes = read;
+        notes.description = "filtered";
+    }
     if (status == STATUS_OK)
-        status = filtered_write(&filtering, echoes, task->output, task->echoes ? "filtered" : scene->description, &all);
+        status = filtered_write(&filtering, echoes, task->output, &notes, &all);
+    echo_notes_free(&read);
     if (status == STATUS_OK) {
         printf("# %d sub-apertures, upsampled %d times\n", filtering.shape.subapertures, filtering.shape.upsampling);
         status = table_print(&filtering, scene, &all);

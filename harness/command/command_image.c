@@ -34,7 +34,8 @@ enum status command_simulate(const struct task *task)
     if (status == STATUS_OK)
         status = scene_simulate(&scene, &echoes);
     if (status == STATUS_OK) {
-        status = echo_file_write(task->output, &echoes, scene.description);
+        const struct echo_notes notes = scene_notes(&scene);
+        status = echo_file_write(task->output, &echoes, &notes);
         echoes_free(&echoes);
     }
     scene_free(&scene);
@@ -193,7 +194,7 @@ static enum status scene_open(const struct task *task, struct scene *scene)
 {
     struct grid grid;
     if (task->echoes)
-        return echoes_scene("image", task, scene);
+        return echoes_scene(task, scene);
     enum status status = task->grid ? grid_parse(task->grid, &grid) : STATUS_OK;
     if (status == STATUS_OK)
         status = scene_load(task->scene, SCENE_DIRECTORY, scene);

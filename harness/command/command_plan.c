@@ -117,7 +117,7 @@ enum status command_plan(const struct task *task)
     struct budget budget = {.seconds = 0.5, .all = true};
     int count = 0;
     if (!task->name_count && !task->echoes)
-        return status_set(STATUS_INVALID, "plan: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
+        return status_set(STATUS_INVALID, "plan: a SCENE, or --echoes FILE.mat, is missing");
     if (task->error && task->time)
         return status_set(STATUS_INVALID, "plan: one of --error and --time is needed, not both");
     enum status status = error_parse(task->error, &budget.error);

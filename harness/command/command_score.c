@@ -55,7 +55,7 @@ static enum status scene_find(const struct task *task, struct scene *scene)
     if ((task->name_count == 2) == !!task->echoes)
         return status_set(STATUS_INVALID, "score: exactly one of SCENE and --echoes FILE.mat is needed");
     if (task->echoes)
-        return echoes_scene("score", task, scene);
+        return echoes_scene(task, scene);
     if (task->grid && !has_extension(task->names[0], ".npy"))
         return status_set(STATUS_INVALID, "score: --grid %s goes with --echoes FILE.mat, or with an image in .npy",
                           task->grid);

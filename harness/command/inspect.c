@@ -197,6 +197,19 @@ static void beam_print(const struct acquisition *a)
     printf("\n");
 }
 
+static void notes_print(const struct echo_notes *notes)
+{
+    for (int k = 0; k < notes->patch_count; k++) {
+        const struct grid *g = &notes->patches[k];
+        printf("%s %d x %d pixels from (%s, %s) m%s\n", k ? "            " : "image grid  ", g->x_count, g->r_count,
+               cell_place(g->x_first, g->x_step).text, cell_place(g->r_first, g->r_step).text,
+               k ? "" : "; taken where there is no --grid");
+    }
+    if (notes->target_count > 0)
+        printf("targets      %d points, the first at (%g, %g) m\n", notes->target_count, notes->targets[0].x,
+               notes->targets[0].r);
+}
+
 /* False where there is none. */
 static bool grid_print(const struct acquisition *a, struct grid *grid)
 {
@@ -219,9 +232,15 @@ enum status inspect_echoes(const char *path)
     struct acquisition a;
     struct echoes echoes;
     struct grid grid;
-    enum status status = echo_file_read(path, &a, &echoes);
+    struct echo_notes notes;
+    enum status status = echo_notes_read(path, &notes);
     if (status != STATUS_OK)
         return status;
+    status = echo_file_read(path, &a, &echoes);
+    if (status != STATUS_OK) {
+        echo_notes_free(&notes);
+        return status;
+    }
     const double end = a.t0[0] + (a.samples - 1) / a.fs;
     printf("%s: echoes, %s\n", path, a.compressed ? "range compressed" : "raw");
     samples_print(&a, echoes.samples);
@@ -235,10 +254,12 @@ enum status inspect_echoes(const char *path)
            a.sound_speed * a.t0[0] / 2, a.sound_speed * end / 2);
     track_print(&a);
     beam_print(&a);
+    notes_print(&notes);
     const bool found = grid_print(&a, &grid);
     const struct scene scene = {
         .acquisition = a, .recorded = (double complex *)echoes.samples, .patch_count = found, .patches = &grid};
     check_warnings(stdout, &scene, true);
+    echo_notes_free(&notes);
     echoes_free(&echoes);
     acquisition_free(&a);
     return STATUS_OK;

@@ -34,7 +34,7 @@ struct command {
 
 static const struct command commands[] = {
     {"run", "compare algorithms on scenes: error against run time",
-     "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR] [--all] [--flops]",
+     "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [-o DIR] [--all] [--flops]",
      "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLF", 0, INT_MAX,
      command_run, true, .every = true},
     {"report", "make one page of a results folder", "DIR", "make one page of a results folder: DIR/report.html", "", 1,
@@ -46,12 +46,12 @@ static const struct command commands[] = {
      "grid to begin with",
      "", 1, 1, command_info, false},
     {"check", "which algorithms can image a scene, and which conditions fail",
-     "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--all]",
+     "(SCENE | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [--all]",
      "check, before any work, which algorithms can image a scene, and which conditions fail or are near their limit; "
      "exit status 1 where an algorithm is refused",
      "aegL", 0, 1, command_check, .every = true},
     {"plan", "the fastest algorithm and settings within an error",
-     "(SCENE | --echoes FILE.mat --grid GRID) [--error E | --time S] [--memory BYTES] [-o FILE.csv] [--all]",
+     "(SCENE | --echoes FILE.mat [--grid GRID]) [--error E | --time S] [--memory BYTES] [-o FILE.csv] [--all]",
      "choose the fastest algorithm and settings within an error, or the most exact within a time, and print error, "
      "time, memory and the next of each family; exit status 1 where nothing fits",
      "oegtETYL", 0, 1, command_plan, false},
@@ -60,14 +60,14 @@ static const struct command commands[] = {
     {"simulate", "write a scene's echoes", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate,
      false},
     {"image", "form one image",
-     "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
+     "(--scene SCENE | --echoes FILE.mat [--grid GRID]) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
      "[--verify] [--tile NxM]",
      "form one image, as numbers or as a picture; with --tile it continues where it was ended", "oseagtRWI", 0, 0,
      command_image, false},
     {"show", "draw an image file", "FILE.mat [-o FILE.png] [--range DB]",
      "draw an image file; the picture is beside it, or at -o", "oR", 1, 1, command_show, false},
     {"score", "measure an image that another program formed",
-     "(IMAGE.mat | IMAGE.npy) (SCENE | --echoes FILE.mat --grid GRID) [--name NAME] [--seconds S] [-o DIR]",
+     "(IMAGE.mat | IMAGE.npy) (SCENE | --echoes FILE.mat [--grid GRID]) [--name NAME] [--seconds S] [-o DIR]",
      "measure an image that another program formed of a scene's echoes, and add its row to a results folder", "oegtNK",
      1, 2, command_score, false},
     {"filter", "remove the echoes from outside a target area",
@@ -88,7 +88,8 @@ static const struct command commands[] = {
      "measure the papers' tables, figures and claims again, beside the printed numbers", "ot", 0, INT_MAX,
      command_reproduce, true},
     {"sweep", "error against run time, each algorithm over its settings",
-     "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--precision float|double] [-o DIR] [--all]",
+     "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [--precision float|double] [-o DIR] "
+     "[--all]",
      "measure error against run time, each algorithm over its settings", "oategPL", 0, INT_MAX, command_sweep, true,
      .every = true},
     {"phase", "phase errors of the two-dimensional spectra (LBF21)", "([SCENE] [-o DIR] | --at FILE.csv)",

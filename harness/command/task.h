@@ -43,9 +43,8 @@ void origin_print(const struct image_origin *origin);
 /* Print its extent and its peak. */
 void image_describe(const struct image *image);
 
-/* The scene of --echoes and --grid. Errors: STATUS_INVALID where one of the two is missing, and as scene_from_echoes;
-   *scene needs no scene_free then. */
-enum status echoes_scene(const char *command, const struct task *task, struct scene *scene);
+/* The scene of --echoes and --grid. Errors: as scene_from_echoes; *scene needs no scene_free then. */
+enum status echoes_scene(const struct task *task, struct scene *scene);
 /* Scenes by name; without names those of `usual` (NULL: all that are not full size), or that of --echoes. Freed with
    scenes_free even on failure. Errors: as scenes_load. */
 enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,

@@ -4,16 +4,14 @@
 #include "command/task.h"
 #include "run/batch.h"
 
-enum status echoes_scene(const char *command, const struct task *task, struct scene *scene)
+enum status echoes_scene(const struct task *task, struct scene *scene)
 {
     struct grid grid;
-    if (!task->grid)
-        return status_set(STATUS_INVALID, "%s: --echoes %s needs --grid xmin:xstep:xcount,rmin:rstep:rcount", command,
-                          task->echoes);
-    enum status status = grid_parse(task->grid, &grid);
+    const enum status status = task->grid ? grid_parse(task->grid, &grid) : STATUS_OK;
     if (status != STATUS_OK)
         return status;
-    return (task->tile ? scene_from_recording : scene_from_echoes)(task->echoes, &grid, task->grid, scene);
+    return (task->tile ? scene_from_recording : scene_from_echoes)(task->echoes, task->grid ? &grid : NULL,
+                                                                   task->grid ? task->grid : task->echoes, scene);
 }
 
 enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,
@@ -33,7 +31,7 @@ enum status task_scenes(const char *command, const struct task *task, int usual_
     *scenes = calloc(1, sizeof **scenes);
     if (!*scenes)
         return status_set(STATUS_FAILED, "%s: no memory for a scene", command);
-    enum status status = echoes_scene(command, task, *scenes);
+    enum status status = echoes_scene(task, *scenes);
     *count = status == STATUS_OK;
     return status;
 }

@@ -66,14 +66,14 @@ static void write_scalars(struct writer *writer, const struct acquisition *a)
             write_reals(writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
 }
 
-enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description)
+enum status echo_file_write(const char *path, const struct echoes *echoes, const struct echo_notes *notes)
 {
     const struct acquisition *a = echoes->acquisition;
     if (echoes->exponent != 0) {
         struct echoes restored;
         enum status status = echoes_restore(path, echoes, &restored);
         if (status == STATUS_OK) {
-            status = echo_file_write(path, &restored, description);
+            status = echo_file_write(path, &restored, notes);
             echoes_free(&restored);
         }
         return status;
@@ -102,8 +102,6 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
     write_reals(&writer, "tx", 3, pings, 1, &a->tx->x);
     write_reals(&writer, "rx", 3, receivers, pings, &a->rx->x);
     write_reals(&writer, "velocity", 3, velocity_count, 1, &a->velocity->x);
-    if (description) {
-        write_text(&writer, "description", description);
-    }
+    echo_notes_write(&writer, notes);
     return writer_close(&writer);
 }

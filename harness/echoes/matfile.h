@@ -19,10 +19,21 @@ struct pings {
 enum status echo_file_read_pings(const char *path, const struct pings *pings, struct acquisition *acquisition,
                                  struct echoes *echoes);
 
+/* What a simulator knows beside the echoes: the image that the scene asks for, and its point targets. */
+struct echo_notes {
+    const char *description; /* NULL: none. Written only */
+    int patch_count, target_count;
+    struct grid *patches;   /* [patch_count], each as grid_check accepts */
+    struct target *targets; /* [target_count] */
+};
+/* Read the notes of an echo file; all of them may be missing. Errors: as echo_file_read. */
+enum status echo_notes_read(const char *path, struct echo_notes *notes);
+void echo_notes_free(struct echo_notes *notes);
+
 /* Write an echo file: v5, or v7.3 where v5 cannot hold a variable (2 GiB). It is written beside `path` and renamed when
-   whole, so that no half of a file remains. Samples are stored in the echoes' own precision. `description` may be NULL.
+   whole, so that no half of a file remains. Samples are stored in the echoes' own precision. `notes` may be NULL.
    Errors: STATUS_INVALID when the place cannot be written. */
-enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description);
+enum status echo_file_write(const char *path, const struct echoes *echoes, const struct echo_notes *notes);
 
 /* Can a file be made here? Asked before long work. Errors: STATUS_INVALID. */
 enum status matfile_place(const char *path);

@@ -118,6 +118,9 @@ void write_reals(struct writer *writer, const char *name, size_t rows, size_t co
 void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
                    const void *values, size_t rows, size_t columns);
 
+/* Write the notes, if there are any. */
+struct echo_notes;
+void echo_notes_write(struct writer *writer, const struct echo_notes *notes);
 /* Write all of an image file but its pixels: a patch's axes, and the image's origin. */
 struct image_origin;
 void image_axes_write(struct writer *writer, const struct grid *grid, int patch);

@@ -128,6 +128,31 @@ static enum status recording_open(const char *path, struct scene *scene)
     return status;
 }
 
+/* The file's own image, unless `grid` is given, and its targets. */
+static enum status notes_take(const char *path, const struct grid *grid, struct scene *scene)
+{
+    struct echo_notes notes;
+    enum status status = echo_notes_read(path, &notes);
+    if (status != STATUS_OK)
+        return status;
+    scene->patches = notes.patches;
+    scene->patch_count = notes.patch_count;
+    scene->targets = notes.targets;
+    scene->target_count = scene->point_count = notes.target_count;
+    if (grid) {
+        scene->patch_count = 1;
+        scene->patches[0] = *grid;
+    }
+    if (scene->patch_count == 0)
+        return status_set(STATUS_INVALID,
+                          "%s: variable `image_grid` is missing; --grid xmin:xstep:xcount,rmin:rstep:rcount is needed",
+                          path);
+    for (int k = 0; k < scene->patch_count; k++)
+        if (grid_check(&scene->patches[k], path) != STATUS_OK)
+            return STATUS_INVALID;
+    return STATUS_OK;
+}
+
 static enum status from_echoes(const char *path, const struct grid *grid, const char *place, bool whole,
                                struct scene *scene)
 {
@@ -138,20 +163,28 @@ static enum status from_echoes(const char *path, const struct grid *grid, const 
     if (status != STATUS_OK) {
         return status;
     }
+    status = notes_take(path, grid, scene);
+    if (status != STATUS_OK) {
+        return status;
+    }
     recording_hash(scene, &scene->hash);
-    const double lengths[] = {grid->x_first, grid->x_step, grid->r_first, grid->r_step, grid->angle_rad};
-    const int counts[] = {grid->x_count, grid->r_count};
-    hash_add(&scene->hash, lengths, sizeof lengths);
-    hash_add(&scene->hash, counts, sizeof counts);
+    for (int k = 0; k < scene->patch_count; k++) {
+        const struct grid *g = &scene->patches[k];
+        const double lengths[] = {g->x_first, g->x_step, g->r_first, g->r_step, g->angle_rad};
+        const int counts[] = {g->x_count, g->r_count};
+        hash_add(&scene->hash, lengths, sizeof lengths);
+        hash_add(&scene->hash, counts, sizeof counts);
+    }
+    for (int k = 0; k < scene->target_count; k++) {
+        const struct target *t = &scene->targets[k];
+        const double numbers[] = {t->x, t->r, creal(t->amplitude), cimag(t->amplitude)};
+        hash_add(&scene->hash, numbers, sizeof numbers);
+    }
     scene->description = strdup("recorded echoes");
-    scene->targets = calloc(1, sizeof *scene->targets);
-    scene->patches = malloc(sizeof *scene->patches);
-    if (!scene->description || !scene->targets || !scene->patches) {
+    if (!scene->description) {
         return status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
     }
-    scene->patch_count = 1;
-    *scene->patches = *grid;
-    return grid_meets_records(&scene->acquisition, 1, grid, place);
+    return grid_meets_records(&scene->acquisition, scene->patch_count, scene->patches, place);
 }
 
 static enum status from_file(const char *path, const struct grid *grid, const char *place, bool whole,

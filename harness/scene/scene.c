@@ -114,6 +114,15 @@ void scene_free(struct scene *scene)
     *scene = (struct scene){0};
 }
 
+struct echo_notes scene_notes(const struct scene *scene)
+{
+    return (struct echo_notes){.description = scene->description,
+                               .patch_count = scene->patch_count,
+                               .patches = scene->patches,
+                               .target_count = scene->point_count,
+                               .targets = scene->targets};
+}
+
 struct problem scene_problem(const struct scene *scene, enum precision precision)
 {
     return problem_make(&scene->acquisition, scene->patch_count, scene->patches, precision);

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "contract/algorithm.h"
+#include "echoes/matfile.h"
 
 #define COORDINATE_MAX_M 1e12 /* bound of every coordinate read, so that no square overflows */
 
@@ -55,15 +56,17 @@ struct scene {
 /* SCENE is a path to a .cfg file, or a name below `scene_directory` without its extension.
    Errors: STATUS_INVALID, the message naming file, line, key, value and what is accepted. */
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out);
-/* The scene of an echo file alone, without targets, named after the file; its image is `grid`, which `place` names
-   in messages. Errors: as echo_file_read, and STATUS_INVALID where no pixel meets any record; nothing to free then. */
+/* The scene of an echo file alone, with its point targets, named after the file; its image is `grid`, which `place`
+   names in messages; NULL: the file's own. Errors: as echo_file_read, and STATUS_INVALID where there is no grid or no
+   pixel meets any record; nothing to free then. */
 enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out);
 /* The same, with the samples left in the file and read ping by ping. Its hash has the file's size and time in their
    place. */
 enum status scene_from_recording(const char *path, const struct grid *grid, const char *place, struct scene *out);
 void scene_free(struct scene *scene);
-/* The whole image from the scene's echoes. The point targets count as all targets where the echoes have no field, no
-   noise and no motion beside the stated track. Borrows from the scene. */
+/* What an echo file keeps of the scene; borrows from it. */
+struct echo_notes scene_notes(const struct scene *scene);
+/* The whole image from the scene's echoes; borrows from the scene. */
 struct problem scene_problem(const struct scene *scene, enum precision precision);
 /* Where two files share a name and not both are shipped, lengthen their names by the folders that distinguish them.
    Errors: STATUS_FAILED without memory. */

@@ -289,7 +289,9 @@ static void content_tells_scenes_apart(void **state)
         hashes[k] = scene.hash;
         const struct echoes echoes = {&scene.acquisition, PRECISION_DOUBLE, scene.recorded, 0};
         scene.recorded[1000] += k * 1e-12;
-        assert_int_equal(echo_file_write(path_in("copy.mat"), &echoes, "another description"), STATUS_OK);
+        assert_int_equal(
+            echo_file_write(path_in("copy.mat"), &echoes, &(struct echo_notes){.description = "another description"}),
+            STATUS_OK);
         scene_free(&scene);
         if (k == 1)
             assert_true(hashes[0] == hashes[1]);
@@ -329,13 +331,13 @@ static void mixtures_are_refused(void **state)
          "no pixel meets any record"},
     };
     static const struct refusal usages[] = {
-        {{"run", "--echoes", "good.mat", "-o", "r"}, {"run: --echoes good.mat needs --grid"}},
+        {{"run", "--echoes", "good.mat", "-o", "r"}, {"good.mat: variable `image_grid` is missing; --grid"}},
         {{"run", "--grid", "0:1:1,20:1:1", "-o", "r"}, {"run: --grid 0:1:1,20:1:1 goes with --echoes"}},
         {{"run", "study/quick", "--echoes", "good.mat", "--grid", "0:1:1,20:1:1", "-o", "r"},
          {"'study/quick' and --echoes good.mat are both given"}},
         {{"run", "good.mat", "-o", "r"}, {"good.mat: is no scene file", "--echoes FILE.mat --grid GRID"}},
         {{"sweep", "--echoes", "none.mat", "--grid", "0:1:1,20:1:1", "-o", "r"}, {"none.mat: cannot be read"}},
-        {{"check"}, {"check: a SCENE, or --echoes FILE.mat with --grid GRID, is missing"}},
+        {{"check"}, {"check: a SCENE, or --echoes FILE.mat, is missing"}},
         {{"simulate", "rec.cfg", "-o", "x.mat"}, {"the echoes of rec are recorded"}},
     };
     static const char *const arguments[ARGUMENTS_MAX] = BAD;

@@ -79,6 +79,31 @@ static void scores_are_those_of_run(void **state)
     free(text);
 }
 
+/* Echoes that `simulate` wrote have their scene's image and targets, also of several patches, filtered ones too. */
+static void echo_files_know_their_scene(void **state)
+{
+    (void)state;
+    static const char *const same[] = {"error", "pslr_db", "islr_db", "width_m"};
+    static const char *const scenes[] = {"study/quick", "pf05/nine"};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        program_good((const char *const[ARGUMENTS_MAX]){"simulate", scenes[k], "-o", "known.mat"});
+        program_good((const char *const[ARGUMENTS_MAX]){"run", "--echoes", "known.mat", "-a", "bp_linear", "-o",
+                                                        k ? "known_1" : "known_0"});
+        program_good(
+            (const char *const[ARGUMENTS_MAX]){"run", scenes[k], "-a", "bp_linear", "-o", k ? "scene_1" : "scene_0"});
+        for (size_t n = 0; n < COUNT_OF(same); n++)
+            assert_true(fabs(cell(k ? "known_1/measurements.csv" : "known_0/measurements.csv", same[n])
+                                 / cell(k ? "scene_1/measurements.csv" : "scene_0/measurements.csv", same[n])
+                             - 1)
+                        < 1e-6);
+    }
+    program_good((const char *const[ARGUMENTS_MAX]){"simulate", "study/quick", "-o", "known.mat"});
+    program_good((const char *const[ARGUMENTS_MAX]){"score", "own.mat", "--echoes", "known.mat", "-o", "by_echoes"});
+    program_good((const char *const[ARGUMENTS_MAX]){"score", "own.mat", "study/quick", "-o", "by_scene"});
+    for (size_t n = 0; n < COUNT_OF(same); n++)
+        assert_true(cell("by_echoes/measurements.csv", same[n]) == cell("by_scene/measurements.csv", same[n]));
+}
+
 static void unfit_images_are_refused(void **state)
 {
     (void)state;
@@ -140,8 +165,8 @@ static void differences_are_measured(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(scores_are_those_of_run),
-                                       cmocka_unit_test(unfit_images_are_refused),
-                                       cmocka_unit_test(differences_are_measured)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scores_are_those_of_run), cmocka_unit_test(echo_files_know_their_scene),
+        cmocka_unit_test(unfit_images_are_refused), cmocka_unit_test(differences_are_measured)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

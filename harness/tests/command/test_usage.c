@@ -78,7 +78,7 @@ static const struct refusal usages[] = {
     {{"image", "-a", "bp_nearest", "-o", "x.mat"}, {"image: exactly one of --scene SCENE and --echoes FILE.mat"}},
     {{"image", "--scene", "study/quick", "--echoes", "good.mat", "-a", "bp_nearest", "-o", "x.mat"},
      {"image: exactly one of --scene SCENE and --echoes FILE.mat"}},
-    {{"image", "--echoes", "good.mat", "-a", "bp_nearest", "-o", "x.mat"}, {"--echoes good.mat needs --grid"}},
+    {{"image", "--echoes", "good.mat", "-a", "bp_nearest", "-o", "x.mat"}, {"good.mat: variable `image_grid` is missing; --grid"}},
     {{"image", "--scene", "study/quick", "-o", "x.mat"}, {"0 times --algorithm SPEC; one is needed"}},
     {{"image", "--scene", "study/quick", "-o", "x.mat", "-a", "bp_nearest", "-a", "bp_sinc"},
      {"2 times --algorithm SPEC; one is needed"}},

@@ -58,7 +58,7 @@ static void assert_round_trip(struct acquisition *a, enum precision precision)
     struct echoes written, read;
     assert_ok(echoes_allocate(a, precision, &written));
     fill_echoes(&written);
-    assert_ok(echo_file_write(path, &written, "round trip"));
+    assert_ok(echo_file_write(path, &written, &(struct echo_notes){.description = "round trip"}));
     assert_ok(echo_file_read(path, &b, &read));
     assert_ptr_equal(read.acquisition, &b);
     assert_same_echoes(&written, &read);

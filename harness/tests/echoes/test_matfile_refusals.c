@@ -371,7 +371,7 @@ static void full_disk_is_noticed(void **state)
     struct echoes echoes;
     assert_ok(echoes_allocate(&a, PRECISION_DOUBLE, &echoes));
     fill_echoes(&echoes);
-    assert_ok(echo_file_write(path, &echoes, "first"));
+    assert_ok(echo_file_write(path, &echoes, &(struct echo_notes){.description = "first"}));
     struct stat whole, now;
     assert_int_equal(stat(path, &whole), 0);
     signal(SIGXFSZ, SIG_IGN);
@@ -380,7 +380,7 @@ static void full_disk_is_noticed(void **state)
     for (rlim_t limit = 0; limit < (rlim_t)whole.st_size + 200; limit += 171) {
         fflush(NULL);
         setrlimit(RLIMIT_FSIZE, &(struct rlimit){limit, old.rlim_max});
-        enum status status = echo_file_write(path, &echoes, "first");
+        enum status status = echo_file_write(path, &echoes, &(struct echo_notes){.description = "first"});
         setrlimit(RLIMIT_FSIZE, &old);
         if (limit < (rlim_t)whole.st_size - 8) { /* the header's date does not change the size by more */
             assert_invalid(status, "cannot be written: ");

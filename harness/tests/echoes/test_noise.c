@@ -88,7 +88,8 @@ static void recorded_have_it(void **state)
     scene.noise_std = 0.2;
     support_echoes(&scene, &echoes);
     const double share = measured(&echoes);
-    assert_int_equal(echo_file_write(path_of("noisy.mat"), &echoes, ""), STATUS_OK);
+    assert_int_equal(echo_file_write(path_of("noisy.mat"), &echoes, &(struct echo_notes){.description = ""}),
+                     STATUS_OK);
     FILE *file = fopen(path_of("recorded.cfg"), "w");
     assert_non_null(file);
     fputs("echoes = \"noisy.mat\";\nimage = { x = { first = -1.0; step = 0.1; count = 20; }; "

@@ -139,6 +139,9 @@ static void echoes_try(const char *path)
 {
     struct acquisition acquisition;
     struct echoes echoes;
+    struct echo_notes notes;
+    if (echo_notes_read(path, &notes) == STATUS_OK)
+        echo_notes_free(&notes);
     if (echo_file_read(path, &acquisition, &echoes) == STATUS_OK) {
         acquisition_free(&acquisition);
         echoes_free(&echoes);
