@@ -178,8 +178,9 @@ static enum status check_usage(const struct task *task)
     if (!task->scene == !task->echoes)
         return status_set(STATUS_INVALID, "image: exactly one of --scene SCENE and --echoes FILE.mat is needed");
     if (task->spec_count != 1)
-        return status_set(STATUS_INVALID, "image: %d times --algorithm SPEC; one is needed (auto chooses)",
-                          task->spec_count);
+        return status_set(STATUS_INVALID, task->spec_count
+                                              ? "image: --algorithm is given twice; one image has one SPEC"
+                                              : "image: --algorithm SPEC is missing; `-a auto` chooses one");
     if (task->range && !output_is_picture(task->output))
         return status_set(STATUS_INVALID, "image: --range %s applies to pictures; -o FILE.png or FILE.svg is needed",
                           task->range);
