@@ -114,16 +114,17 @@ struct work {
     char skipped[256]; /* work left out because the scene does not need it; may be empty */
 };
 
-enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE };
+enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE, PARAM_TEXT };
 
 /* One setting: parsing, bounds, `info`, the CSV's options column and the sweep all come from this row. Name, type and
    place come from the field by PARAM or PARAM_NAMED. */
 struct param {
     const char *name, *summary; /* name NULL ends the table */
-    enum param_type type;       /* the field is an int (integer, choice: index) or a double (real) */
+    enum param_type type;       /* the field: an int (integer; choice: index), a double (real) or a char array (text) */
     size_t offset, size;        /* of the field in the options struct */
     double initial, min, max;   /* default and closed bounds; for a choice initial is the index */
     const char *const *choices; /* NULL-terminated names of a choice, else NULL */
+    const char *text;           /* default of a text */
     const char *sweep;          /* the values that `sweep` runs, separated by blanks; may be NULL */
     bool terse;                 /* left out of the options text while it has its default */
     bool hidden;                /* the plain path, for tests and the papers' times: no user's setting */
@@ -149,6 +150,7 @@ enum trait {
 
 struct algorithm {
     const char *name, *summary, *reference; /* reference: paper and equations */
+    const char *origin; /* what identifies the code of one that the program does not contain, for provenance, a line */
     unsigned traits;                        /* of enum trait */
     size_t options_size;                    /* of the options struct; 0 without params */
     const struct param *params;             /* NULL-terminated; NULL without options */

@@ -1,5 +1,6 @@
 #include "contract/param.h"
 
+#include <stdio.h>
 #include <string.h>
 
 void param_store(const struct param *param, void *options, double value)
@@ -30,5 +31,8 @@ void options_fill(const struct algorithm *algorithm, void *options)
     if (algorithm->options_size > 0)
         memset(options, 0, algorithm->options_size);
     for (const struct param *param = algorithm->params; param && param->name; param++)
-        param_store(param, options, param->initial);
+        if (param->type == PARAM_TEXT)
+            snprintf((char *)options + param->offset, param->size, "%s", param->text);
+        else
+            param_store(param, options, param->initial);
 }

@@ -4,7 +4,7 @@
 
 #include "contract/algorithm.h"
 
-/* One field; a choice by its index. */
+/* One field that is no text; a choice by its index. */
 void param_store(const struct param *param, void *options, double value);
 double param_load(const struct param *param, const void *options);
 /* Index of a name among a choice's, -1 if it is none. */

@@ -434,7 +434,7 @@ enum status bench_specs(const char *directory, const char *const *specs, int cou
     enum status status = bench.lines ? STATUS_OK : status_set(STATUS_FAILED, "no memory for %d algorithms", count);
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         struct spec given;
-        status = spec_parse(specs[k], &given);
+        status = spec_asked(specs[k], &given);
         if (status != STATUS_OK)
             break;
         for (int p = 0; p < 2 - spec_given(&given, "precision") && status == STATUS_OK; p++)

@@ -7,6 +7,7 @@
 #include "echoes/mat_tiles.h"
 #include "show/table.h"
 #include "command/inspect.h"
+#include "guests/guests.h"
 
 static const struct {
     enum trait trait;
@@ -50,6 +51,10 @@ static void accepted_format(const struct param *param, char *text, size_t size)
             used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", param->choices[k]);
         return;
     }
+    if (param->type == PARAM_TEXT) {
+        snprintf(text, size, "a text without commas");
+        return;
+    }
     param_format(param, param->min, min, sizeof min);
     param_format(param, param->max, max, sizeof max);
     snprintf(text, size, "%s to %s", min, max);
@@ -86,8 +91,14 @@ static enum status file_info(const char *path)
 
 enum status command_info(const struct task *task)
 {
-    const struct algorithm *algorithm = algorithm_find(task->names[0]);
+    const char *rest;
     struct spec spec;
+    const enum status invited = guest_invite(task->names[0]);
+    if (invited != STATUS_OK)
+        return invited;
+    const struct algorithm *algorithm = guest_find(task->names[0], &rest);
+    if (*rest)
+        algorithm = NULL;
     if (has_extension(task->names[0], ".mat") || (!algorithm && access(task->names[0], F_OK) == 0))
         return file_info(task->names[0]);
     if (!algorithm) {
@@ -98,7 +109,9 @@ enum status command_info(const struct task *task)
         return status_set(STATUS_INVALID, "info: '%.100s' has settings, must be the name of an algorithm alone",
                           task->names[0]);
     }
-    printf("%s: %s\nreference: %s\ntraits: ", algorithm->name, algorithm->summary, algorithm->reference);
+    printf("%s: %s\nreference: %s\n%s%s%straits: ", algorithm->name, algorithm->summary, algorithm->reference,
+           algorithm->origin ? "origin: " : "", algorithm->origin ? algorithm->origin : "",
+           algorithm->origin ? "\n" : "");
     print_traits(algorithm);
     printf("\n" LAYOUT, "parameter", "default", "accepted", "sweep");
     printf(LAYOUT, "precision", "float", "float, double", "float double");
@@ -107,7 +120,9 @@ enum status command_info(const struct task *task)
         char initial[64], accepted[160];
         if (p->hidden)
             continue;
-        if (p->type == PARAM_REAL)
+        if (p->type == PARAM_TEXT)
+            snprintf(initial, sizeof initial, "'%.60s'", p->text);
+        else if (p->type == PARAM_REAL)
             snprintf(initial, sizeof initial, "%.6g", p->initial);
         else
             param_format(p, p->initial, initial, sizeof initial);

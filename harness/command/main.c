@@ -41,7 +41,7 @@ static const struct command commands[] = {
      1, command_report, false},
     {"list", "list the algorithms", "", "list the algorithms, with summary, reference and traits", "", 0, 0,
      command_list, false},
-    {"info", "explain an algorithm's settings, or an echo or image file", "(NAME | FILE.mat)",
+    {"info", "explain an algorithm's settings, or an echo or image file", "(NAME | PLUGIN.so | FILE.mat)",
      "print an algorithm's parameters, with default, bounds and sweep; or the content of an echo or image file, with a "
      "grid to begin with",
      "", 1, 1, command_info, false},
@@ -114,7 +114,7 @@ static const struct named {
     {'o', "output", "PATH", "file or folder of the result", IN_TASK(output)},
     {'s', "scene", "SCENE", "a path, or a name below scenes/ without .cfg", IN_TASK(scene)},
     {'e', "echoes", "FILE", "recorded echoes in MATLAB format", IN_TASK(echoes)},
-    {'a', "algorithm", "SPEC", "NAME or NAME:key=value,...; all take precision=double", 0},
+    {'a', "algorithm", "SPEC", "NAME or PLUGIN.so, then :key=value,...; all take precision=double", 0},
     {'g', "grid", "GRID", "xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)", IN_TASK(grid)},
     {'t', "threads", "N", "OpenMP threads, 1 to 1024", IN_TASK(threads)},
     {'R', "range", "DB", "range of a picture below its peak, 60 dB unless given", IN_TASK(range)},
@@ -222,7 +222,7 @@ static enum status spec_add(struct task *task, const char *text)
     if (!specs)
         return status_set(STATUS_FAILED, "no memory for --algorithm %s", text);
     task->specs = specs;
-    enum status status = spec_parse(text, &specs[task->spec_count]);
+    enum status status = spec_asked(text, &specs[task->spec_count]);
     task->spec_count += status == STATUS_OK;
     return status;
 }

@@ -96,7 +96,7 @@ static enum status job_plan(struct worker *worker, const char *spec, const char 
     if (worker->job_count == JOBS_MOST)
         return status_set(STATUS_INVALID, "more than %d jobs", JOBS_MOST);
     *job = (struct job){0};
-    enum status status = spec_parse(spec, &job->spec);
+    enum status status = spec_asked(spec, &job->spec);
     if (status == STATUS_OK)
         status = scene_find(worker, scene, &job->scene);
     enum precision precision = job->spec.precision;

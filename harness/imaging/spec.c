@@ -11,6 +11,7 @@
 #include "text/suggestion.h"
 #include "text/text_append.h"
 #include "contract/param.h"
+#include "guests/guests.h"
 
 /* Every algorithm takes `precision` beside its own table; it goes to spec.precision. */
 static const char *const precision_names[] = {[PRECISION_FLOAT] = "float", [PRECISION_DOUBLE] = "double", NULL};
@@ -104,6 +105,15 @@ static enum status value_read(const char *place, const struct param *param, cons
                       param->name, value, param->type == PARAM_INTEGER ? "a whole" : "a", min, max);
 }
 
+static enum status text_store(const char *place, const struct param *param, const char *value, char *field)
+{
+    if (strlen(value) >= param->size)
+        return status_set(STATUS_INVALID, "SPEC '%.100s': %s has %zu characters, must have at most %zu", place,
+                          param->name, strlen(value), param->size - 1);
+    snprintf(field, param->size, "%s", value);
+    return STATUS_OK;
+}
+
 /* One key=value (modified in place). */
 static enum status setting_read(const char *place, char *setting, struct spec *spec)
 {
@@ -132,6 +142,8 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
         return status_set(STATUS_INVALID, "SPEC '%.100s': %s is given twice; accepted: each key once", place, setting);
     spec->given |= bit;
 
+    if (param->type == PARAM_TEXT)
+        return text_store(place, param, value, (char *)spec->options + param->offset);
     double number = 0;
     enum status status = value_read(place, param, value, &number);
     if (status != STATUS_OK)
@@ -150,15 +162,18 @@ static enum status text_build(struct spec *spec)
     size_t length = 0;
     *spec->text = '\0';
     for (const struct param *param = spec->algorithm->params; param && param->name; param++) {
-        char value[64];
+        char value[sizeof spec->text];
         if (param->terse && param_load(param, spec->options) == param->initial)
             continue;
-        param_format(param, param_load(param, spec->options), value, sizeof value);
+        if (param->type == PARAM_TEXT)
+            snprintf(value, sizeof value, "%s", (const char *)spec->options + param->offset);
+        else
+            param_format(param, param_load(param, spec->options), value, sizeof value);
         int added =
             snprintf(spec->text + length, sizeof spec->text - length, "%s%s=%s", length ? "," : "", param->name, value);
         length += (size_t)added;
         if (length >= sizeof spec->text)
-            return status_set(STATUS_FAILED, "algorithm %s: its options are longer than %zu characters as text",
+            return status_set(STATUS_INVALID, "algorithm %s: its options must have at most %zu characters as text",
                               spec->algorithm->name, sizeof spec->text - 1);
     }
     return STATUS_OK;
@@ -167,10 +182,11 @@ static enum status text_build(struct spec *spec)
 /* `copy` is the SPEC again, cut up in place; `place` stays whole for messages. */
 static enum status spec_read(const char *place, char *copy, struct spec *spec)
 {
-    char *rest = strchr(copy, ':');
+    const char *behind;
+    spec->algorithm = guest_find(copy, &behind);
+    char *rest = *behind ? copy + (behind - copy) : NULL;
     if (rest)
         *rest++ = '\0';
-    spec->algorithm = algorithm_find(copy);
     if (!spec->algorithm) {
         struct name_list accepted = {.suggestion = suggestion_begin(copy)};
         for (int i = 0; algorithms[i]; i++)
@@ -205,6 +221,13 @@ enum status spec_parse(const char *text, struct spec *spec)
     if (status != STATUS_OK)
         spec_free(spec);
     return status;
+}
+
+enum status spec_asked(const char *text, struct spec *spec)
+{
+    *spec = (struct spec){.algorithm = NULL};
+    const enum status status = guest_invite(text);
+    return status == STATUS_OK ? spec_parse(text, spec) : status;
 }
 
 void spec_free(struct spec *spec)

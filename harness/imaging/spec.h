@@ -1,4 +1,4 @@
-/* SPEC on the command line: NAME or NAME:key=value,key=value. */
+/* SPEC on the command line: NAME or NAME:key=value,key=value; NAME of the table, or invited (guests.h). */
 #ifndef SASBENCH_IMAGING_SPEC_H
 #define SASBENCH_IMAGING_SPEC_H
 
@@ -16,6 +16,8 @@ struct spec {
 
 /* Errors: STATUS_INVALID naming the SPEC, the key or value, and what is accepted. spec_free releases *spec. */
 enum status spec_parse(const char *text, struct spec *spec);
+/* The same of a SPEC that the user gave, which may name code of the user's own. Errors: also as guest_invite. */
+enum status spec_asked(const char *text, struct spec *spec);
 void spec_free(struct spec *spec);
 
 /* A copy; the same with one more setting. Errors: STATUS_FAILED without memory; as spec_parse, also when the key was

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "common/isa.h"
+#include "files/hash.h"
 #include "commit.h" /* made by the build */
 
 #ifndef SASBENCH_FLAGS
@@ -40,23 +41,6 @@ static void machine_fill(char *text, size_t size)
     snprintf(text, size, "%s, %ld cores, %.1f GiB", model, sysconf(_SC_NPROCESSORS_ONLN), gib);
 }
 
-/* FNV-1a over the running executable: a program changed without a commit does not mix its rows with others. */
-static void program_fill(char *text, size_t size)
-{
-    unsigned char block[65536];
-    uint64_t hash = 0xcbf29ce484222325u;
-    FILE *file = fopen("/proc/self/exe", "rb");
-    snprintf(text, size, "unknown");
-    if (!file)
-        return;
-    for (size_t count; (count = fread(block, 1, sizeof block, file)) > 0;)
-        for (size_t k = 0; k < count; k++)
-            hash = (hash ^ block[k]) * 0x100000001b3u;
-    if (!ferror(file))
-        snprintf(text, size, "%016llx", (unsigned long long)hash);
-    fclose(file);
-}
-
 static void date_fill(char *text, size_t size)
 {
     time_t now = time(NULL);
@@ -70,7 +54,8 @@ void provenance_fill(struct provenance *provenance, int threads)
 {
     *provenance = (struct provenance){.threads = threads};
     machine_fill(provenance->machine, sizeof provenance->machine);
-    program_fill(provenance->program, sizeof provenance->program);
+    /* A program changed without a commit does not mix its rows with others. */
+    hash_file("/proc/self/exe", provenance->program);
     snprintf(provenance->isa, sizeof provenance->isa, "%s", isa_name(isa_choose()));
     snprintf(provenance->compiler, sizeof provenance->compiler, "%s%s", COMPILER, __VERSION__);
     snprintf(provenance->flags, sizeof provenance->flags, "%s", SASBENCH_FLAGS);

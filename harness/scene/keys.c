@@ -7,8 +7,7 @@
 #include "text/text_append.h"
 #include "scene/key_types.h"
 
-#define FNV_PRIME 1099511628211u
-#define SEED_MAX  1e15 /* seeds pass through a double, exactly up to 2^53 */
+#define SEED_MAX 1e15 /* seeds pass through a double, exactly up to 2^53 */
 
 static const char *const pulse_names[] = {"lfm", "lfm_time", "flat", NULL};            /* enum pulse_kind */
 static const char *const beam_names[] = {"rect", "txrx", NULL};                        /* enum beam_kind */
@@ -112,13 +111,6 @@ config_setting_t *key_member(const config_setting_t *group, const char *name)
         member = config_setting_get_member(group, name);
     }
     return member;
-}
-
-void hash_add(uint64_t *hash, const void *bytes, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        *hash = (*hash ^ ((const unsigned char *)bytes)[i]) * FNV_PRIME;
-    }
 }
 
 static enum status check_names(const struct reading *reading, const config_setting_t *setting, const char *group)

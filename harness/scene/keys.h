@@ -4,13 +4,13 @@
 
 #include <libconfig.h>
 
+#include "files/hash.h"
 #include "scene/scene.h"
 #include "scene/text.h"
 
 #define SCATTERERS_MAX 10000000 /* of all fields */
 /* The accepted value of a key whose value comes from the echo file. */
-#define LEFT_OUT   "left out with `echoes`, whose file says it"
-#define HASH_BEGIN 14695981039346656037u /* FNV-1a */
+#define LEFT_OUT "left out with `echoes`, whose file says it"
 
 /* Groups stay libconfig settings until they are read in turn; NULL when the file leaves them out. */
 struct reading {
@@ -73,9 +73,6 @@ enum status groups_read(struct reading *reading, config_setting_t *root);
 
 /* A setting of a group, or of the nearest scene of the group's `base` chain; NULL if there is none. */
 config_setting_t *key_member(const config_setting_t *group, const char *name);
-
-/* Add bytes to a scene's hash. */
-void hash_add(uint64_t *hash, const void *bytes, size_t count);
 
 /* Check the keys against each other. Errors: STATUS_INVALID. */
 enum status keys_check(const struct reading *reading);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "guests/guests.h"
 #include "imaging/spec.h"
 #include "tests/assertions.h"
 
@@ -204,13 +205,38 @@ static void values_are_formatted(void **state)
     assert_string_equal(text, "6");
 }
 
+/* Nothing but a user's own SPEC loads a shared object; two kinds of name end differently. */
+static void guests_are_invited(void **state)
+{
+    (void)state;
+    struct spec spec;
+    const char *rest;
+    assert_ptr_equal(guest_find("bare:x=1", &rest), &bare);
+    assert_string_equal(rest, ":x=1");
+    assert_null(guest_find("./no:such.so:taps=8", &rest));
+    assert_string_equal(rest, ":taps=8");
+    assert_null(guest_find("no.sol:taps=8", &rest));
+    assert_string_equal(rest, ":taps=8");
+    assert_int_equal(guest_invite("bare"), STATUS_OK);
+    assert_int_equal(guest_invite("neither"), STATUS_OK); /* spec_parse refuses it */
+    assert_int_equal(spec_parse("./no.so:taps=8", &spec), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "unknown algorithm './no.so'"));
+    assert_int_equal(guest_invite("./no.so:taps=8"), STATUS_INVALID);
+    assert_string_equal(status_message(), "./no.so: cannot be read: No such file or directory");
+    char text[300];
+    memset(text, 'a', sizeof text);
+    memcpy(text + sizeof text - 4, ".so", 4);
+    assert_int_equal(guest_invite(text), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "its name has 299 characters, must have at most 200"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_are_used),        cmocka_unit_test(settings_are_read_in_any_order),
         cmocka_unit_test(algorithm_without_params), cmocka_unit_test(canonical_text_reads_back),
         cmocka_unit_test(bad_specs_are_refused),    cmocka_unit_test(long_text_is_refused),
-        cmocka_unit_test(values_are_formatted),
+        cmocka_unit_test(values_are_formatted),     cmocka_unit_test(guests_are_invited),
     };
     return cmocka_run_group_tests_name("spec", tests, NULL, NULL);
 }

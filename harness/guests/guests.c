@@ -1,0 +1,69 @@
+#include "guests/guests.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_MOST = 200 }; /* file names of pictures hold it, and 255 characters at most */
+
+static const struct guest_kind *const kinds[] = {&guest_plugin};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* The newest first. */
+static struct guest {
+    struct guest *next;
+    struct algorithm algorithm;
+    char name[NAME_MOST + 1];
+} * guests;
+
+/* Of the name that a SPEC begins with, and its kind: NULL for the table's. */
+static size_t name_length(const char *spec, const struct guest_kind **kind)
+{
+    *kind = NULL;
+    for (int k = 0; k < KINDS; k++) {
+        const size_t length = kinds[k]->length(spec);
+        if (length > 0) {
+            *kind = kinds[k];
+            return length;
+        }
+    }
+    return strcspn(spec, ":");
+}
+
+const struct algorithm *guest_find(const char *spec, const char **rest)
+{
+    const struct guest_kind *kind;
+    const size_t length = name_length(spec, &kind);
+    *rest = spec + length;
+    for (int k = 0; algorithms[k] && !kind; k++)
+        if (strlen(algorithms[k]->name) == length && strncmp(algorithms[k]->name, spec, length) == 0)
+            return algorithms[k];
+    for (const struct guest *guest = guests; guest; guest = guest->next)
+        if (strlen(guest->name) == length && strncmp(guest->name, spec, length) == 0)
+            return &guest->algorithm;
+    return NULL;
+}
+
+enum status guest_invite(const char *spec)
+{
+    const char *rest;
+    const struct guest_kind *kind;
+    const size_t length = name_length(spec, &kind);
+    if (!kind || guest_find(spec, &rest))
+        return STATUS_OK;
+    if (length > NAME_MOST)
+        return status_set(STATUS_INVALID, "SPEC '%.40s...': its name has %zu characters, must have at most %d", spec,
+                          length, NAME_MOST);
+    struct guest *guest = calloc(1, sizeof *guest);
+    if (!guest)
+        return status_set(STATUS_FAILED, "SPEC '%.100s': out of memory", spec);
+    memcpy(guest->name, spec, length);
+    guest->algorithm.name = guest->name;
+    const enum status status = kind->make(guest->name, &guest->algorithm);
+    if (status != STATUS_OK) {
+        free(guest);
+        return status;
+    }
+    guest->next = guests;
+    guests = guest;
+    return STATUS_OK;
+}

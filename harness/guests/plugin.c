@@ -1,0 +1,385 @@
+/* Shared objects as algorithms: sasbench.h on their side, struct algorithm on ours. */
+#include <dlfcn.h>
+#include <errno.h>
+#include <omp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/pairs/pairs.h"
+#include "backprojection/traces.h"
+#include "contract/delay.h"
+#include "contract/param.h"
+#include "files/hash.h"
+#include "guests/guests.h"
+#include "sasbench.h"
+
+enum { SETTINGS_MOST = 60, TEXT_SIZE = 208 };
+
+/* One shared object, kept until the program ends. */
+struct plugin {
+    const char *name;
+    struct sas_algorithm theirs; /* fields beyond their header's are 0 */
+    struct param params[SETTINGS_MOST + 1];
+    char hash[HASH_TEXT];
+};
+
+/* A plan: what they see of the problem, and what the host's functions need. */
+struct plugin_plan {
+    struct sas_problem shown; /* first: the host's functions get its address */
+    const struct plugin *plugin;
+    void *theirs;
+    struct problem problem;
+    struct sas_acquisition acquisition;
+    struct sas_grid *grids;          /* [patch_count] */
+    const struct sas_grid **patches; /* [patch_count] into them */
+    double numbers[SETTINGS_MOST];
+    const char *texts[SETTINGS_MOST];
+    void *options;         /* a copy; texts point into it */
+    struct traces *traces; /* of raw echoes */
+    struct traces_shape shape;
+    double bytes;
+};
+
+static const struct plugin_plan *plan_of(const struct sas_problem *shown)
+{
+    return (const struct plugin_plan *)shown;
+}
+
+/* ---- the host's functions ---- */
+
+static int host_pair(const struct sas_problem *shown, int ping, int receiver, int patch, double row, double column,
+                     double *delay_s)
+{
+    const struct problem *problem = &plan_of(shown)->problem;
+    const struct acquisition *a = problem->acquisition;
+    const struct vector place = grid_point(&problem->patches[patch], row, column);
+    const struct pixel_line line = {place.x, place.y, 1, 0, 1};
+    struct pair_span spans[2];
+    *delay_s = delay_exact(a->tx[ping], a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver],
+                           a->velocity[ping], place, a->sound_speed);
+    const double q = (*delay_s - a->t0[ping]) * a->fs;
+    return q >= 0 && q <= a->samples - 1
+           && (!(a->aperture_limit < 1) || pair_spans(a, ping, acquisition_normal(a, ping), &line, spans) > 0);
+}
+
+static double host_pairs(const struct sas_problem *shown)
+{
+    return pairs_count(&plan_of(shown)->problem);
+}
+
+static void host_compress(const struct sas_problem *shown, int thread, const void *record, void *row)
+{
+    const struct plugin_plan *plan = plan_of(shown);
+    const enum precision precision = plan->problem.precision;
+    if (plan->traces)
+        traces_of(precision)->fill(plan->traces, thread, record, row);
+    else
+        memcpy(row, record,
+               (size_t)plan->acquisition.samples
+                   * (precision == PRECISION_DOUBLE ? 2 * sizeof(double) : 2 * sizeof(float)));
+}
+
+static double host_compress_flops(const struct sas_problem *shown)
+{
+    return plan_of(shown)->shape.flops;
+}
+
+static int host_fail(int status, const char *format, ...)
+{
+    char text[900];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return (int)status_set((enum status)status, "%s", text);
+}
+
+static void host_stage(void *run, const char *name)
+{
+    stages_end(run, name);
+}
+
+static const struct sas_host host = {sizeof host,         SAS_ABI,   host_pair, host_pairs, host_compress,
+                                     host_compress_flops, host_fail, host_stage};
+
+/* ---- struct algorithm ---- */
+
+/* What one of their functions returned: with the name ahead of its reason. */
+static enum status returned(const struct plugin *plugin, const char *function, int status)
+{
+    char text[900];
+    if (status == SAS_OK)
+        return STATUS_OK;
+    if (status < SAS_OK || status > SAS_UNSUPPORTED)
+        return status_set(STATUS_FAILED, "%s: its %s returned status %d, must be 0 to 3", plugin->name, function,
+                          status);
+    snprintf(text, sizeof text, "%s", status_message());
+    return status_set((enum status)status, "%s: %s", plugin->name, text);
+}
+
+/* Ahead of a call that may fail: what is printed if it has no message. */
+static void reason_clear(const char *function)
+{
+    status_set(STATUS_FAILED, "its %s failed without a reason", function);
+}
+
+static void plan_free(struct plugin_plan *plan)
+{
+    if (plan && plan->traces)
+        traces_of(plan->problem.precision)->destroy(plan->traces);
+    if (plan) {
+        free(plan->grids);
+        free(plan->patches);
+        free(plan->options);
+    }
+    free(plan);
+}
+
+static void settings_show(struct plugin_plan *plan, const void *options, size_t size)
+{
+    const struct plugin *plugin = plan->plugin;
+    memcpy(plan->options, options, size);
+    for (uint32_t k = 0; k < plugin->theirs.setting_count; k++) {
+        const struct param *param = &plugin->params[k];
+        if (param->type == PARAM_TEXT)
+            plan->texts[k] = (const char *)plan->options + param->offset;
+        else
+            plan->numbers[k] = param_load(param, plan->options);
+    }
+}
+
+static void problem_show(struct plugin_plan *plan)
+{
+    const struct acquisition *a = plan->problem.acquisition;
+    plan->acquisition = (struct sas_acquisition){sizeof plan->acquisition,
+                                                 a->pings,
+                                                 a->receivers,
+                                                 a->samples,
+                                                 a->sound_speed,
+                                                 a->fc,
+                                                 a->fs,
+                                                 a->bandwidth,
+                                                 a->t0,
+                                                 &a->tx->x,
+                                                 &a->rx->x,
+                                                 &a->velocity->x,
+                                                 a->tx_length,
+                                                 a->rx_length,
+                                                 a->aperture_limit,
+                                                 a->compressed ? 0 : a->pulse_length,
+                                                 (const double *)a->pulse};
+    for (int k = 0; k < plan->problem.patch_count; k++) {
+        const struct grid *g = &plan->problem.patches[k];
+        plan->grids[k] = (struct sas_grid){
+            sizeof plan->grids[k], g->x_count, g->r_count, g->x_first, g->x_step, g->r_first, g->r_step, g->angle_rad};
+        plan->patches[k] = &plan->grids[k];
+    }
+    plan->shown = (struct sas_problem){sizeof plan->shown,
+                                       plan->problem.precision == PRECISION_DOUBLE ? SAS_DOUBLE : SAS_FLOAT,
+                                       &plan->acquisition,
+                                       plan->problem.patch_count,
+                                       omp_get_max_threads(),
+                                       plan->patches,
+                                       plan->numbers,
+                                       plan->texts,
+                                       &host};
+}
+
+static enum status plugin_plan(const struct problem *problem, const void *method, const void *options, void **out)
+{
+    const struct plugin *plugin = method;
+    const size_t patches = (size_t)problem->patch_count, size = plugin->theirs.setting_count * (8 + TEXT_SIZE) + 1;
+    const struct acquisition *a = problem->acquisition;
+    struct plugin_plan *plan = calloc(1, sizeof *plan);
+    *out = NULL;
+    if (plan) {
+        *plan = (struct plugin_plan){.plugin = plugin, .problem = *problem};
+        plan->grids = calloc(patches, sizeof *plan->grids);
+        plan->patches = calloc(patches, sizeof(void *));
+        plan->options = calloc(1, size);
+    }
+    enum status status = STATUS_OK;
+    if (!plan || !plan->grids || !plan->patches || !plan->options)
+        status = status_set(STATUS_FAILED, "%s: no memory for a plan", plugin->name);
+    if (status == STATUS_OK && !a->compressed)
+        status =
+            traces_of(problem->precision)
+                ->plan(a, &(struct traces_form){.upsample = 1}, omp_get_max_threads(), &plan->shape, &plan->traces);
+    if (status == STATUS_OK) {
+        plan->bytes =
+            (double)(sizeof *plan + patches * (sizeof *plan->grids + sizeof(void *)) + size) + plan->shape.bytes;
+        if (options)
+            settings_show(plan, options, size - 1);
+        problem_show(plan);
+        reason_clear("plan");
+        status = returned(plugin, "plan", plugin->theirs.plan(&plan->shown, &plan->theirs));
+    }
+    if (status == STATUS_OK)
+        *out = plan;
+    else
+        plan_free(plan);
+    return status;
+}
+
+static enum status plugin_execute(void *data, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    const struct plugin_plan *plan = data;
+    reason_clear("execute");
+    return returned(plan->plugin, "execute",
+                    plan->plugin->theirs.execute(plan->theirs, echoes->samples, image->pixels, stages));
+}
+
+static struct work plugin_work(const void *data)
+{
+    const struct plugin_plan *plan = data;
+    struct sas_work theirs = {.size = sizeof theirs};
+    plan->plugin->theirs.work(plan->theirs, &theirs);
+    struct work work = {.flops = theirs.flops, .pairs = theirs.pairs, .bytes = theirs.bytes + plan->bytes};
+    snprintf(work.engine, sizeof work.engine, "%.*s", (int)sizeof theirs.engine, theirs.engine);
+    snprintf(work.skipped, sizeof work.skipped, "%.*s", (int)sizeof theirs.skipped, theirs.skipped);
+    return work;
+}
+
+static void plugin_destroy(void *data)
+{
+    struct plugin_plan *plan = data;
+    if (plan)
+        plan->plugin->theirs.destroy(plan->theirs);
+    plan_free(plan);
+}
+
+/* ---- loading ---- */
+
+/* One setting: numbers and indices have 8 bytes of the options each, texts TEXT_SIZE behind them. */
+static enum status setting_take(struct plugin *plugin, uint32_t k, const struct sas_setting *s)
+{
+    struct param *param = &plugin->params[k];
+    const bool text = s->kind == SAS_TEXT;
+    *param =
+        (struct param){.name = s->name,
+                       .summary = s->summary,
+                       .type = s->kind == SAS_INTEGER ? PARAM_INTEGER
+                               : s->kind == SAS_REAL  ? PARAM_REAL
+                               : text                 ? PARAM_TEXT
+                                                      : PARAM_CHOICE,
+                       .offset = 8 * (size_t)(text ? plugin->theirs.setting_count : k) + (text ? k * TEXT_SIZE : 0),
+                       .size = text                  ? TEXT_SIZE
+                               : s->kind == SAS_REAL ? sizeof(double)
+                                                     : sizeof(int),
+                       .initial = s->initial,
+                       .min = s->min,
+                       .max = s->max,
+                       .choices = s->kind == SAS_NAME ? s->names : NULL,
+                       .text = s->text ? s->text : "",
+                       .sweep = s->sweep};
+    int names = 0;
+    while (s->kind == SAS_NAME && s->names && s->names[names])
+        names++;
+    if (s->kind == SAS_NAME)
+        param->max = names - 1;
+    const char *fault = NULL;
+    if (s->kind < SAS_INTEGER || s->kind > SAS_TEXT)
+        fault = "its kind is none of enum sas_kind";
+    else if (!s->name || !*s->name || strpbrk(s->name, "=,:") || !s->summary || !*s->summary)
+        fault = "it needs a summary, and a name without '=', ',' and ':'";
+    else if (!text && !(s->initial >= param->min && s->initial <= param->max))
+        fault = "its default is not within its bounds, or not one of its names";
+    else if (text && (strlen(param->text) >= TEXT_SIZE || strchr(param->text, ',')))
+        fault = "its default text has a comma, or more than 200 characters";
+    return fault ? status_set(STATUS_INVALID, "%s: setting %d, '%.60s': %s", plugin->name, (int)k + 1,
+                              s->name ? s->name : "", fault)
+                 : STATUS_OK;
+}
+
+static enum status settings_take(struct plugin *plugin)
+{
+    const struct sas_algorithm *theirs = &plugin->theirs;
+    const uint32_t stride = theirs->setting_count > 0 ? theirs->settings[0].size : 0;
+    enum status status = STATUS_OK;
+    if (theirs->setting_count > SETTINGS_MOST || stride > sizeof(struct sas_setting))
+        status = status_set(STATUS_INVALID,
+                            "%s: it has %u settings of %u bytes each, must be at most %d of %zu bytes; a newer "
+                            "sasbench.h has more",
+                            plugin->name, theirs->setting_count, stride, SETTINGS_MOST, sizeof(struct sas_setting));
+    for (uint32_t k = 0; k < theirs->setting_count && status == STATUS_OK; k++) {
+        struct sas_setting setting = {.size = 0};
+        memcpy(&setting, (const char *)theirs->settings + (size_t)k * stride, stride);
+        status = setting_take(plugin, k, &setting);
+    }
+    return status;
+}
+
+static enum status plugin_take(struct plugin *plugin, const struct sas_algorithm *theirs)
+{
+    static const size_t least = offsetof(struct sas_algorithm, destroy) + sizeof theirs->destroy;
+    if (theirs->abi < 1 || theirs->abi > SAS_ABI)
+        return status_set(STATUS_INVALID, "%s: its sas_plugin has ABI %u%s; this program takes 1 to %d", plugin->name,
+                          theirs->abi, theirs->abi > SAS_ABI ? ", of a newer sasbench.h" : "", SAS_ABI);
+    if (theirs->size < least || theirs->size > sizeof *theirs)
+        return status_set(STATUS_INVALID, "%s: its struct sas_algorithm has %u bytes%s; this program takes %zu to %zu",
+                          plugin->name, theirs->size, theirs->size > least ? ", of a newer sasbench.h" : "", least,
+                          sizeof *theirs);
+    memcpy(&plugin->theirs, theirs, theirs->size);
+    if (!theirs->plan || !theirs->execute || !theirs->work || !theirs->destroy || !theirs->summary
+        || !theirs->reference)
+        return status_set(STATUS_INVALID,
+                          "%s: its sas_plugin leaves out summary, reference, plan, execute, work or destroy",
+                          plugin->name);
+    return settings_take(plugin);
+}
+
+static size_t plugin_length(const char *spec)
+{
+    for (const char *at = strstr(spec, ".so"); at; at = strstr(at + 1, ".so"))
+        if (at > spec && (at[3] == '\0' || at[3] == ':'))
+            return (size_t)(at + 3 - spec);
+    return 0;
+}
+
+/* dlopen takes a name without a slash for one of the system's libraries. */
+static enum status plugin_make(const char *name, struct algorithm *algorithm)
+{
+    char path[4096];
+    struct plugin *plugin = calloc(1, sizeof *plugin);
+    if (!plugin)
+        return status_set(STATUS_FAILED, "%s: out of memory", name);
+    plugin->name = name;
+    snprintf(path, sizeof path, "%s%s", strchr(name, '/') ? "" : "./", name);
+    enum status status = STATUS_OK;
+    void *object = NULL;
+    if (!hash_file(path, plugin->hash))
+        status = status_set(STATUS_INVALID, "%s: cannot be read: %s", name, strerror(errno));
+    else if (!(object = dlopen(path, RTLD_NOW | RTLD_LOCAL)))
+        status = status_set(STATUS_INVALID, "%s: cannot be loaded: %s", name, dlerror());
+    const struct sas_algorithm *theirs = object ? dlsym(object, "sas_plugin") : NULL;
+    if (object && !theirs)
+        status =
+            status_set(STATUS_INVALID, "%s: defines no `sas_plugin`, the constant of sasbench.h that a plug-in is: %s",
+                       name, dlerror());
+    if (theirs)
+        status = plugin_take(plugin, theirs);
+    if (status != STATUS_OK) {
+        if (object)
+            dlclose(object);
+        free(plugin);
+        return status;
+    }
+    const size_t count = theirs->setting_count;
+    *algorithm = (struct algorithm){.name = name,
+                                    .origin = plugin->hash,
+                                    .summary = plugin->theirs.summary,
+                                    .reference = plugin->theirs.reference,
+                                    .traits = plugin->theirs.traits & (SAS_ANY_TRACK | SAS_APERTURE_LIMIT),
+                                    .options_size = count * (8 + TEXT_SIZE),
+                                    .params = plugin->params,
+                                    .method = plugin,
+                                    .plan = plugin_plan,
+                                    .execute = plugin_execute,
+                                    .work = plugin_work,
+                                    .destroy = plugin_destroy};
+    return STATUS_OK;
+}
+
+const struct guest_kind guest_plugin = {plugin_length, plugin_make};
