@@ -92,7 +92,8 @@ struct sas_problem {
     uint32_t size;
     int32_t precision; /* enum sas_precision, of samples and pixels */
     const struct sas_acquisition *acquisition;
-    int32_t patch_count;                   /* >= 1: execute fills all of them; their steps may differ */
+    int64_t pixels;                        /* of all patches */
+    int32_t patch_count;                   /* >= 1: execute fills all of them; their steps and angles may differ */
     int32_t threads;                       /* that execute may use at most */
     const struct sas_grid *const *patches; /* [patch_count] */
     const double *numbers;                 /* [setting_count] values of SAS_INTEGER, SAS_REAL; index of SAS_NAME */
@@ -100,27 +101,32 @@ struct sas_problem {
     const struct sas_host *host;
 };
 
-/* The host's functions; each may be called by several threads at once. */
+/* The host's functions; each may be called by several threads at once, and allocates nothing but in `pairs`. A record's
+   number is ping * receivers + receiver; a pixel's counts row by row, through one patch after the other. */
 struct sas_host {
     uint32_t size, abi;
-    /* Does a pair count? Its exact delay goes to *delay_s. Row and column may be fractions, grids turned. */
-    int (*pair)(const struct sas_problem *problem, int ping, int receiver, int patch, double row, double column,
-                double *delay_s);
-    /* The number of pairs that count; what work.pairs must be, unless 0. */
+    /* Does a pair count? Its exact delay, and where its record is read, go to *delay_s and *q, whether it does or not. */
+    int (*pair)(const struct sas_problem *problem, int32_t record, int64_t pixel, double *delay_s, double *q);
+    /* The pixel's place in the track's axes, x, y = r, z = 0. */
+    void (*place)(const struct sas_problem *problem, int64_t pixel, double place_m[3]);
+    /* The number of pairs that count. */
     double (*pairs)(const struct sas_problem *problem);
-    /* Compress one record, complex [samples], into another array [samples]; compressed echoes are copied. `thread` is 0
-       to threads - 1: each has scratch memory of its own. Allocates nothing. */
-    void (*compress)(const struct sas_problem *problem, int thread, const void *record, void *row);
-    double (*compress_flops)(const struct sas_problem *problem); /* of one record; 0 where it is copied */
+    /* The record, compressed, or as it is where the echoes are compressed, into double [samples][2], in either precision.
+       `thread` is 0 to threads - 1: each has scratch memory of its own. */
+    void (*compress)(const struct sas_problem *problem, int thread, const void *samples, int32_t record, void *row);
+    /* FLOPs of compressing all records; 0 where they are compressed. */
+    double (*compress_flops)(const struct sas_problem *problem);
+    /* Write a pixel, rounded to the precision. */
+    void (*store)(const struct sas_problem *problem, void *const *pixels, int64_t pixel, double re, double im);
+    /* In execute, by its calling thread, at least once: the time since the last call, or the start, goes to this name,
+       a text of the plug-in ("compress", "focus"). At most 12 names. */
+    void (*stage)(void *run, const char *name);
     /* Keep the message (printf's format, one line) and return `status`. */
     int (*fail)(int status, const char *format, ...)
 #ifdef __GNUC__
         __attribute__((format(printf, 2, 3)))
 #endif
         ;
-    /* In execute, by its calling thread, at least once: the time since the last call, or the start, goes to this name,
-       a text of the plug-in ("compress", "focus"). At most 12 names. */
-    void (*stage)(void *run, const char *name);
 };
 
 /* Counts that no machine changes. */
@@ -128,10 +134,10 @@ struct sas_work {
     uint32_t size;     /* set by the host */
     double flops;      /* real additions and multiplications of execute on samples and pixels: 5 N log2 N an FFT, 6 a
                           complex product, 8 one that is added to a sum; so at least 8 a pair. Not: delays, phase
-                          factors, weights. host->compress has counts of its own, compress_flops a record */
-    double pairs;      /* host->pairs; 0 where the method sums no pairs */
+                          factors, weights. host->compress has counts of its own: compress_flops */
+    double pairs;      /* host->pairs(problem); 0 where the method sums no pairs */
     double bytes;      /* what the plan holds on one thread */
-    char engine[96];   /* one word: the way chosen */
+    char engine[96];   /* one word: the way chosen; may stay empty */
     char skipped[256]; /* what was left out because the problem does not need it; may stay empty */
 };
 

@@ -156,7 +156,7 @@ static enum status measure_scene(const char *name, const struct spec *specs, int
 enum status baseline_write(const char *path)
 {
     struct scene scenes[SCENES] = {0};
-    struct scene_hash hashes[SCENES];
+    struct content hashes[SCENES];
     struct spec *specs;
     int count, row_count = 0;
     int lock = -1;
@@ -170,7 +170,7 @@ enum status baseline_write(const char *path)
     for (int k = 0; k < SCENES && status == STATUS_OK; k++) {
         progress_line(false, "[%d/%d] %s", k + 1, SCENES, scene_list[k]);
         status = measure_scene(scene_list[k], specs, count, &scenes[k], rows, reasons, &row_count);
-        hashes[k] = (struct scene_hash){scenes[k].name, scenes[k].hash};
+        hashes[k] = content_scene(scenes[k].name, scenes[k].hash);
     }
     progress_line_clear();
     if (status == STATUS_OK)

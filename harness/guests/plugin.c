@@ -11,6 +11,7 @@
 #include "backprojection/traces.h"
 #include "contract/delay.h"
 #include "contract/param.h"
+#include "echoes/echo_data.h"
 #include "files/hash.h"
 #include "guests/guests.h"
 #include "sasbench.h"
@@ -49,18 +50,42 @@ static const struct plugin_plan *plan_of(const struct sas_problem *shown)
 
 /* ---- the host's functions ---- */
 
-static int host_pair(const struct sas_problem *shown, int ping, int receiver, int patch, double row, double column,
-                     double *delay_s)
+/* The patch of a pixel, whose number then counts within it. */
+static int patch_of(const struct problem *problem, int64_t *pixel)
+{
+    int k = 0;
+    for (; k < problem->patch_count - 1; k++) {
+        const int64_t count = (int64_t)problem->patches[k].x_count * problem->patches[k].r_count;
+        if (*pixel < count)
+            break;
+        *pixel -= count;
+    }
+    return k;
+}
+
+static struct vector place_of(const struct problem *problem, int64_t pixel)
+{
+    const struct grid *grid = &problem->patches[patch_of(problem, &pixel)];
+    return grid_point(grid, (double)(pixel / grid->x_count), (double)(pixel % grid->x_count));
+}
+
+static void host_place(const struct sas_problem *shown, int64_t pixel, double place_m[3])
+{
+    const struct vector place = place_of(&plan_of(shown)->problem, pixel);
+    memcpy(place_m, &place, sizeof place);
+}
+
+static int host_pair(const struct sas_problem *shown, int32_t record, int64_t pixel, double *delay_s, double *q)
 {
     const struct problem *problem = &plan_of(shown)->problem;
     const struct acquisition *a = problem->acquisition;
-    const struct vector place = grid_point(&problem->patches[patch], row, column);
+    const int ping = record / a->receivers;
+    const struct vector place = place_of(problem, pixel);
     const struct pixel_line line = {place.x, place.y, 1, 0, 1};
     struct pair_span spans[2];
-    *delay_s = delay_exact(a->tx[ping], a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver],
-                           a->velocity[ping], place, a->sound_speed);
-    const double q = (*delay_s - a->t0[ping]) * a->fs;
-    return q >= 0 && q <= a->samples - 1
+    *delay_s = delay_exact(a->tx[ping], a->rx[record], a->velocity[ping], place, a->sound_speed);
+    *q = (*delay_s - a->t0[ping]) * a->fs;
+    return *q >= 0 && *q <= a->samples - 1
            && (!(a->aperture_limit < 1) || pair_spans(a, ping, acquisition_normal(a, ping), &line, spans) > 0);
 }
 
@@ -69,21 +94,37 @@ static double host_pairs(const struct sas_problem *shown)
     return pairs_count(&plan_of(shown)->problem);
 }
 
-static void host_compress(const struct sas_problem *shown, int thread, const void *record, void *row)
+/* In float, a row's values first stand side by side at its beginning. */
+static void host_compress(const struct sas_problem *shown, int thread, const void *samples, int32_t record, void *row)
 {
     const struct plugin_plan *plan = plan_of(shown);
     const enum precision precision = plan->problem.precision;
+    const size_t count = (size_t)plan->acquisition.samples, size = precision_size(precision);
+    const void *from = (const char *)samples + (size_t)record * count * size;
+    float complex *single = row;
+    double complex *both = row;
     if (plan->traces)
-        traces_of(precision)->fill(plan->traces, thread, record, row);
+        traces_of(precision)->fill(plan->traces, thread, from, row);
     else
-        memcpy(row, record,
-               (size_t)plan->acquisition.samples
-                   * (precision == PRECISION_DOUBLE ? 2 * sizeof(double) : 2 * sizeof(float)));
+        memcpy(row, from, count * size);
+    for (size_t n = count; precision == PRECISION_FLOAT && n-- > 0;)
+        both[n] = single[n];
 }
 
 static double host_compress_flops(const struct sas_problem *shown)
 {
-    return plan_of(shown)->shape.flops;
+    const struct plugin_plan *plan = plan_of(shown);
+    return plan->shape.flops * plan->acquisition.pings * plan->acquisition.receivers;
+}
+
+static void host_store(const struct sas_problem *shown, void *const *pixels, int64_t pixel, double re, double im)
+{
+    const struct problem *problem = &plan_of(shown)->problem;
+    const int patch = patch_of(problem, &pixel);
+    if (problem->precision == PRECISION_DOUBLE)
+        ((double complex *)pixels[patch])[pixel] = re + im * I;
+    else
+        ((float complex *)pixels[patch])[pixel] = (float complex)(re + im * I);
 }
 
 static int host_fail(int status, const char *format, ...)
@@ -101,8 +142,8 @@ static void host_stage(void *run, const char *name)
     stages_end(run, name);
 }
 
-static const struct sas_host host = {sizeof host,         SAS_ABI,   host_pair, host_pairs, host_compress,
-                                     host_compress_flops, host_fail, host_stage};
+static const struct sas_host host = {sizeof host,         SAS_ABI,    host_pair,  host_place, host_pairs, host_compress,
+                                     host_compress_flops, host_store, host_stage, host_fail};
 
 /* ---- struct algorithm ---- */
 
@@ -179,6 +220,7 @@ static void problem_show(struct plugin_plan *plan)
     plan->shown = (struct sas_problem){sizeof plan->shown,
                                        plan->problem.precision == PRECISION_DOUBLE ? SAS_DOUBLE : SAS_FLOAT,
                                        &plan->acquisition,
+                                       (int64_t)problem_pixels(&plan->problem),
                                        plan->problem.patch_count,
                                        omp_get_max_threads(),
                                        plan->patches,
@@ -237,7 +279,8 @@ static struct work plugin_work(const void *data)
     struct sas_work theirs = {.size = sizeof theirs};
     plan->plugin->theirs.work(plan->theirs, &theirs);
     struct work work = {.flops = theirs.flops, .pairs = theirs.pairs, .bytes = theirs.bytes + plan->bytes};
-    snprintf(work.engine, sizeof work.engine, "%.*s", (int)sizeof theirs.engine, theirs.engine);
+    snprintf(work.engine, sizeof work.engine, "%.*s", (int)sizeof theirs.engine,
+             *theirs.engine ? theirs.engine : "plug-in");
     snprintf(work.skipped, sizeof work.skipped, "%.*s", (int)sizeof theirs.skipped, theirs.skipped);
     return work;
 }

@@ -1,7 +1,9 @@
 /* Finished files of results (results.h). */
 #include "results/results.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -98,14 +100,21 @@ void results_free(struct results *results)
     *results = (struct results){0};
 }
 
-enum status measurements_write(const char *path, const char *note, const struct scene_hash *scenes, int scene_count,
+struct content content_scene(char *name, uint64_t hash)
+{
+    struct content content = {"scene", name, ""};
+    snprintf(content.text, sizeof content.text, "%016" PRIx64, hash);
+    return content;
+}
+
+enum status measurements_write(const char *path, const char *note, const struct content *contents, int content_count,
                                const struct measurement *rows, int row_count)
 {
     struct text_file text;
     enum status status = text_file_open_named(path, &text);
     if (status)
         return status;
-    head_write(text.stream, &row_kinds[KIND_MEASUREMENTS], NULL, note, scenes, scene_count);
+    head_write(text.stream, &row_kinds[KIND_MEASUREMENTS], NULL, note, contents, content_count);
     for (int k = 0; k < row_count; k++)
         row_write(text.stream, row_kinds[KIND_MEASUREMENTS].columns, &rows[k]);
     return text_file_close(&text, STATUS_OK);

@@ -8,11 +8,15 @@
 #include "files/csv.h"
 #include "results/measurement.h"
 
-/* Hash of the scene content that rows were measured on. */
-struct scene_hash {
-    char *scene;
-    uint64_t hash;
+/* What rows were measured on, a "scene" with the hash of its content; or by, an "algorithm" from outside the program
+   with its origin. */
+enum { CONTENT_TEXT = 160 };
+struct content {
+    const char *kind;
+    char *name;
+    char text[CONTENT_TEXT]; /* without a colon */
 };
+struct content content_scene(char *name, uint64_t hash);
 
 /* A finished file, measurements.csv, targets.csv or a baseline, in memory; freed with results_free, which accepts a
    zeroed struct. Texts of the rows belong to the csv. */
@@ -28,7 +32,7 @@ enum status results_read(const char *path, struct results *results);
 void results_free(struct results *results);
 /* A whole measurements file without provenance, the same on every machine. `note` is one line: what the file is and
    how it is made. Errors: STATUS_INVALID when it cannot be written; an older file is then left as it is. */
-enum status measurements_write(const char *path, const char *note, const struct scene_hash *scenes, int scene_count,
+enum status measurements_write(const char *path, const char *note, const struct content *contents, int content_count,
                                const struct measurement *rows, int row_count);
 
 #endif

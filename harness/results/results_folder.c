@@ -15,7 +15,7 @@
 #include "files/text_file.h"
 #include "results/rows.h"
 
-/* Identifies a measurement; an algorithm of NULL stands for all of the scene. */
+/* Identifies a measurement; NULL stands for all. */
 struct key {
     const char *scene, *algorithm, *options, *precision;
 };
@@ -23,10 +23,10 @@ struct key {
 struct results_folder {
     int lock; /* of the folder */
     struct provenance provenance;
-    char *paths[KINDS];        /* of its files */
-    FILE *files[KINDS];        /* open for appending */
-    struct scene_hash *scenes; /* content of every scene that has rows */
-    int scene_count;
+    char *paths[KINDS];       /* of its files */
+    FILE *files[KINDS];       /* open for appending */
+    struct content *contents; /* of everything that has rows */
+    int content_count;
     struct csv earlier;       /* measurements.csv as the earlier run left it; rows point into it */
     struct measurement *rows; /* [earlier.row_count] */
     bool *dropped;            /* [earlier.row_count] the scene's content has changed since, or a new row replaces it */
@@ -62,13 +62,16 @@ static bool measurement_present(const struct csv *measurements, const struct csv
     return false;
 }
 
+static bool part_matches(const char *part, const char *text)
+{
+    return !part || strcmp(part, text) == 0;
+}
+
 static bool key_matches(const struct key *key, const char *scene, const char *algorithm, const char *options,
                         const char *precision)
 {
-    return strcmp(key->scene, scene) == 0
-           && (!key->algorithm
-               || (strcmp(key->algorithm, algorithm) == 0 && strcmp(key->options, options) == 0
-                   && strcmp(key->precision, precision) == 0));
+    return part_matches(key->scene, scene) && part_matches(key->algorithm, algorithm)
+           && part_matches(key->options, options) && part_matches(key->precision, precision);
 }
 
 /* Rewrite one file from the rows of `old`, without those of `except` (NULL: all stay) and without rows of targets
@@ -81,7 +84,7 @@ static enum status file_rewrite(struct results_folder *folder, int kind, const s
     if (status != STATUS_OK)
         return status;
     FILE *file = text.stream;
-    head_write(file, &row_kinds[kind], &folder->provenance, NULL, folder->scenes, folder->scene_count);
+    head_write(file, &row_kinds[kind], &folder->provenance, NULL, folder->contents, folder->content_count);
     for (int row = 0; row < old[kind].row_count; row++) {
         if (except
             && key_matches(except, csv_cell(&old[kind], row, 0), csv_cell(&old[kind], row, 1),
@@ -116,48 +119,46 @@ static enum status folder_rewrite(struct results_folder *folder, const struct cs
 
 /* --- Taking up an earlier run -------------------------------------------------------------------------------- */
 
-static struct scene_hash *scene_hash_find(const struct results_folder *folder, const char *scene)
+static struct content *content_find(const struct results_folder *folder, const char *kind, const char *name)
 {
-    for (int k = 0; k < folder->scene_count; k++)
-        if (strcmp(folder->scenes[k].scene, scene) == 0)
-            return &folder->scenes[k];
+    for (int k = 0; k < folder->content_count; k++)
+        if (strcmp(folder->contents[k].kind, kind) == 0 && strcmp(folder->contents[k].name, name) == 0)
+            return &folder->contents[k];
     return NULL;
 }
 
-static enum status scene_hash_set(struct results_folder *folder, const char *scene, uint64_t hash)
+/* Takes over the name. */
+static enum status content_set(struct results_folder *folder, struct content content)
 {
-    struct scene_hash *known = scene_hash_find(folder, scene);
+    struct content *known = content_find(folder, content.kind, content.name);
     if (known) {
-        known->hash = hash;
+        memcpy(known->text, content.text, sizeof known->text);
+        free(content.name);
         return STATUS_OK;
     }
-    struct scene_hash *scenes = realloc(folder->scenes, ((size_t)folder->scene_count + 1) * sizeof *scenes);
-    char *name = strdup(scene);
-    if (scenes)
-        folder->scenes = scenes;
-    if (!scenes || !name) {
-        free(name);
-        return status_set(STATUS_FAILED, "no memory for the scene %s", scene);
+    struct content *contents = realloc(folder->contents, ((size_t)folder->content_count + 1) * sizeof *contents);
+    if (!contents) {
+        free(content.name);
+        return status_set(STATUS_FAILED, "no memory for the %s's content", content.kind);
     }
-    scenes[folder->scene_count++] = (struct scene_hash){name, hash};
+    folder->contents = contents;
+    contents[folder->content_count++] = content;
     return STATUS_OK;
 }
 
-/* The comments "scene NAME: HEX". An unreadable one is no hash, and the scene's rows are measured again. */
-static enum status scene_hashes_read(struct results_folder *folder, const struct csv *csv)
+/* The comments "scene NAME: HASH" and "algorithm NAME: ORIGIN": the last colon ends the name. */
+static enum status contents_read(struct results_folder *folder, const struct csv *csv)
 {
+    static const char *const kinds[] = {"scene", "algorithm"};
     enum status status = STATUS_OK;
-    for (int k = 0; k < csv->comment_count && !status; k++) {
-        char *name = strdup(csv->comments[k]), *value = name ? strrchr(name, ':') : NULL, *end = NULL;
-        if (!name)
-            return status_set(STATUS_FAILED, "%s: no memory", csv->path);
-        if (value && strncmp(name, "scene ", strlen("scene ")) == 0) {
-            *value++ = '\0';
-            uint64_t hash = strtoull(value, &end, 16);
-            if (end != value && !*end)
-                status = scene_hash_set(folder, name + strlen("scene "), hash);
-        }
-        free(name);
+    for (int k = 0; k < 2 * csv->comment_count && !status; k++) {
+        const char *comment = csv->comments[k / 2], *kind = kinds[k % 2], *colon = strrchr(comment, ':');
+        const char *name = comment + strlen(kind) + 1;
+        if (strncmp(comment, kind, strlen(kind)) != 0 || comment[strlen(kind)] != ' ' || !colon || colon < name)
+            continue;
+        struct content content = {kind, strndup(name, (size_t)(colon - name)), ""};
+        snprintf(content.text, sizeof content.text, "%s", colon + 1 + strspn(colon + 1, " "));
+        status = content.name ? content_set(folder, content) : status_set(STATUS_FAILED, "%s: no memory", csv->path);
     }
     return status;
 }
@@ -283,7 +284,7 @@ static enum status folder_begin(struct results_folder *folder, const char *direc
     /* Everything is read before anything is written, so that a faulty file stays unchanged. */
     folder->earlier = old[KIND_MEASUREMENTS];
     if (!status)
-        status = scene_hashes_read(folder, &folder->earlier);
+        status = contents_read(folder, &folder->earlier);
     if (!status)
         status = rows_parse(folder);
     if (!status && *why)
@@ -341,21 +342,36 @@ static int earlier_find(const struct results_folder *folder, const struct key *k
     return -1;
 }
 
-enum status results_folder_scene(struct results_folder *folder, const char *scene, uint64_t hash)
+/* The rows of `key` are those of this content; from now on, if they were not. */
+static enum status content_declare(struct results_folder *folder, struct content content, const struct key *key)
 {
-    const struct key key = {.scene = scene};
-    struct scene_hash *known = scene_hash_find(folder, scene);
+    const struct content *known = content_find(folder, content.kind, content.name);
     enum status status = STATUS_OK;
-    if (known && known->hash == hash)
+    if (known && strcmp(known->text, content.text) == 0)
         return STATUS_OK;
-    if (earlier_find(folder, &key) >= 0) {
+    if (earlier_find(folder, key) >= 0) {
         char why[400];
-        snprintf(why, sizeof why, "the scene %.300s has changed", scene);
+        snprintf(why, sizeof why, "the %s %.300s has changed", content.kind, content.name);
         status = files_keep(folder, why);
     }
-    if (!status)
-        status = scene_hash_set(folder, scene, hash);
-    return status ? status : rows_drop(folder, &key);
+    content.name = strdup(content.name);
+    if (!content.name)
+        return status_set(STATUS_FAILED, "no memory for the %s's content", content.kind);
+    const enum status set = content_set(folder, content);
+    status = status ? status : set;
+    return status ? status : rows_drop(folder, key);
+}
+
+enum status results_folder_scene(struct results_folder *folder, const char *scene, uint64_t hash)
+{
+    return content_declare(folder, content_scene((char *)scene, hash), &(struct key){.scene = scene});
+}
+
+enum status results_folder_algorithm(struct results_folder *folder, const char *algorithm, const char *origin)
+{
+    struct content content = {"algorithm", (char *)algorithm, ""};
+    snprintf(content.text, sizeof content.text, "%s", origin);
+    return content_declare(folder, content, &(struct key){.algorithm = algorithm});
 }
 
 const struct measurement *results_folder_find(const struct results_folder *folder, const char *scene,
@@ -408,9 +424,9 @@ enum status results_folder_close(struct results_folder *folder)
             status = status_set(STATUS_FAILED, "%s: cannot be closed: %s", folder->paths[k], strerror(errno));
         free(folder->paths[k]);
     }
-    for (int k = 0; k < folder->scene_count; k++)
-        free(folder->scenes[k].scene);
-    free(folder->scenes);
+    for (int k = 0; k < folder->content_count; k++)
+        free(folder->contents[k].name);
+    free(folder->contents);
     free(folder->rows);
     free(folder->dropped);
     csv_free(&folder->earlier);

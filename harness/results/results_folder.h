@@ -16,6 +16,8 @@ enum status results_folder_open(const char *directory, const struct provenance *
 /* Declare a scene before its rows. Rows from other content (hash) of the same name are dropped; the old files are
    kept and reported as above. */
 enum status results_folder_scene(struct results_folder *folder, const char *scene, uint64_t hash);
+/* The same of an algorithm from outside the program, by its origin: a rebuilt plug-in is measured anew. */
+enum status results_folder_algorithm(struct results_folder *folder, const char *algorithm, const char *origin);
 /* The finished row of an earlier run, or NULL; belongs to the folder, valid until results_folder_close. A failed row
    is not finished: the new row replaces it. */
 const struct measurement *results_folder_find(const struct results_folder *folder, const char *scene,

@@ -1,7 +1,6 @@
 /* Header and rows of results on disk (rows.h). */
 #include "results/rows.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -50,7 +49,7 @@ void row_write(FILE *file, const struct column *columns, const void *row)
 /* A comment is one line, whatever characters a name contains. */
 static void comment_write(FILE *file, const char *key, const char *name, const char *value)
 {
-    const char *parts[] = {"# ", key, name, ": ", value};
+    const char *parts[] = {"# ", key, *name ? " " : "", name, ": ", value};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         for (const char *at = parts[k]; *at; at++)
             fputc((unsigned char)*at < ' ' ? '?' : *at, file);
@@ -58,7 +57,7 @@ static void comment_write(FILE *file, const char *key, const char *name, const c
 }
 
 void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
-                const struct scene_hash *scenes, int scene_count)
+                const struct content *contents, int content_count)
 {
     fprintf(file, "# %s\n", kind->format);
     for (size_t k = 0; provenance && k < sizeof notes / sizeof *notes; k++)
@@ -67,11 +66,8 @@ void head_write(FILE *file, const struct row_kind *kind, const struct provenance
         fprintf(file, "# threads: %d\n", provenance->threads);
     else
         fprintf(file, "# %s\n", note);
-    for (int k = 0; k < scene_count; k++) {
-        char hash[17];
-        snprintf(hash, sizeof hash, "%016" PRIx64, scenes[k].hash);
-        comment_write(file, "scene ", scenes[k].scene, hash);
-    }
+    for (int k = 0; k < content_count; k++)
+        comment_write(file, contents[k].kind, contents[k].name, contents[k].text);
     for (const struct column *column = kind->columns; column->name; column++)
         fprintf(file, "%s%s", column == kind->columns ? "" : ",", column->name);
     fputc('\n', file);

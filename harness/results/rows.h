@@ -21,7 +21,7 @@ extern const struct row_kind row_kinds[KINDS];
 
 /* The lines ahead of the rows; without a provenance, `note` stands in its place. */
 void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
-                const struct scene_hash *scenes, int scene_count);
+                const struct content *contents, int content_count);
 void row_write(FILE *file, const struct column *columns, const void *row);
 
 /* Is a file of this kind, by its first line? */

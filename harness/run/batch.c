@@ -99,6 +99,9 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
     struct visit visit;
     int missing = 0;
     enum status status = results_folder_scene(batch->results, scene->name, scene->hash);
+    for (int k = 0; k < spec_count && status == STATUS_OK; k++)
+        if (specs[k].algorithm->origin)
+            status = results_folder_algorithm(batch->results, specs[k].algorithm->name, specs[k].algorithm->origin);
     for (int k = 0; k < spec_count; k++)
         missing += !batch_find(batch, scene, &specs[k]);
     const bool visited = missing > 0 || visit_pictures_missing(batch, scene, spec_count, specs);

@@ -1,0 +1,250 @@
+/* Algorithms in shared objects, as a stranger makes them: with the installed header and the template of docs/plugin
+   alone. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "files/csv.h"
+#include "tests/command/program.h"
+
+/* The template, built; cc NAME.so FLAGS compiles NAME.c with the installed header. */
+static int plugin_make(void **state)
+{
+    inputs_make(state);
+    assert_shell(
+        "build=$(dirname \"$SASBENCH_PROGRAM\")/..\n"
+        "meson install -C \"$build\" --no-rebuild --destdir \"$PWD/installed\" >&2\n"
+        "mv installed/usr/local/include include\n"
+        "cp '" SASBENCH_ROOT "'/docs/plugin/* .\n"
+        "CPATH=$PWD/include meson setup built >&2 && CPATH=$PWD/include ninja -C built >&2 && cp built/mine.so .\n"
+        "printf '%s\\n' '#!/bin/sh' 'name=$1; shift' "
+        "'exec cc -std=gnu17 -O1 -fopenmp -Wall -Wextra -Werror -shared -fPIC -Iinclude -o \"$name.so\" \"$@\" -lm'"
+        " >plug && chmod +x plug",
+        0);
+    return 0;
+}
+
+static char *cell_of(const char *file, int row, const char *column)
+{
+    struct csv csv;
+    assert_int_equal(csv_read(path_in(file), CSV_TAIL_KEEP, &csv), STATUS_OK);
+    assert_true(row < csv.row_count);
+    char *cell = strdup(csv_cell(&csv, row, csv_column(&csv, column)));
+    csv_free(&csv);
+    return cell;
+}
+
+static void assert_cell(const char *file, int row, const char *column, const char *wanted)
+{
+    char *cell = cell_of(file, row, column);
+    assert_string_equal(cell, wanted);
+    free(cell);
+}
+
+/* The file's only algorithm comment. */
+static void origin_of(const char *file, char *text, size_t size)
+{
+    struct csv csv;
+    assert_int_equal(csv_read(path_in(file), CSV_TAIL_KEEP, &csv), STATUS_OK);
+    const char *origin = csv_comment(&csv, "algorithm ./mine.so");
+    assert_non_null(origin);
+    snprintf(text, size, "%s", origin);
+    csv_free(&csv);
+}
+
+/* The header is installed, and compiles alone in either language. */
+static void header_is_public(void **state)
+{
+    (void)state;
+    text_write("alone.c", "#include <sasbench.h>\nint size = (int)sizeof(struct sas_problem) + SAS_ABI;\n");
+    text_write("alone.cc", "#include <sasbench.h>\n"
+                           "static int execute(void *, const void *, void *const *, void *) { return SAS_OK; }\n"
+                           "static int plan(const struct sas_problem *problem, void **)\n"
+                           "{ return SAS_HAS(problem, struct sas_problem, host) ? SAS_OK : SAS_FAILED; }\n"
+                           "static void work(const void *, sas_work *) {}\nstatic void destroy(void *) {}\n"
+                           "const sas_algorithm sas_plugin = {sizeof sas_plugin, SAS_ABI, \"a\", \"b\", 0, 0, nullptr,"
+                           " plan, execute, work, destroy};\n");
+    assert_shell("cc -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude alone.c", 0);
+    assert_shell("c++ -std=c++11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude alone.cc", 0);
+    assert_shell("test $(wc -l <mine.c) -le 60 && test $(wc -l <meson.build) -le 3", 0);
+}
+
+/* The template's image is that of our own truncated sinc, with its counts, on two scenes, in every command. */
+static void template_is_measured(void **state)
+{
+    (void)state;
+    program_good((const char *const[ARGUMENTS_MAX]){"run", "study/quick", "gate/squint", "-a", "./mine.so", "-a",
+                                                    "./mine.so:taps=4,precision=double", "-a", "bp_sinc", "-o", "run"});
+    for (int scene = 0; scene < 2; scene++) {
+        char *error = cell_of("run/measurements.csv", 3 * scene, "error");
+        char *ours = cell_of("run/measurements.csv", 3 * scene + 2, "error");
+        assert_cell("run/measurements.csv", 3 * scene, "status", "ok");
+        assert_cell("run/measurements.csv", 3 * scene, "algorithm", "./mine.so");
+        assert_cell("run/measurements.csv", 3 * scene + 1, "options", "taps=4");
+        assert_true(fabs(atof(error) - atof(ours)) < 1e-2 * atof(ours));
+        free(error);
+        free(ours);
+        char *pairs = cell_of("run/measurements.csv", 3 * scene + 2, "pairs");
+        assert_cell("run/measurements.csv", 3 * scene, "pairs", pairs);
+        free(pairs);
+    }
+    program_good((const char *const[ARGUMENTS_MAX]){"image", "--scene", "study/quick", "-a", "mine.so", "-o", "i.png"});
+    program_good((const char *const[ARGUMENTS_MAX]){"sweep", "study/quick", "-a", "./mine.so", "-o", "sweep"});
+    char *told = program_output((const char *const[ARGUMENTS_MAX]){"info", "mine.so"});
+    assert_non_null(strstr(told, "mine.so: back projection by a truncated sinc\n"));
+    assert_non_null(strstr(told, "taps        8          1 to 64                  2 4 8 16\n"));
+    free(told);
+    char *points = support_read("sweep/measurements.csv");
+    assert_non_null(strstr(points, "./mine.so,taps=16,double"));
+    free(points);
+}
+
+/* What was built anew is measured anew; other algorithms' rows, and those of the same file, stay. */
+static void rebuilt_is_measured_anew(void **state)
+{
+    (void)state;
+    static const char *const arguments[ARGUMENTS_MAX] = {"run", "study/quick", "-a", "./mine.so",
+                                                         "-a",  "bp_nearest",  "-o", "anew"};
+    char first[80], second[80];
+    program_good(arguments);
+    origin_of("anew/measurements.csv", first, sizeof first);
+    char *ours = cell_of("anew/measurements.csv", 1, "run_s"), *theirs = cell_of("anew/measurements.csv", 0, "run_s");
+    program_good(arguments);
+    assert_cell("anew/measurements.csv", 0, "run_s", theirs);
+    free(theirs);
+    assert_shell("sed 's/BP22/BP 22/' mine.c >other.c && cp mine.so kept.so && ./plug mine other.c", 0);
+    struct outcome outcome = program_run(arguments);
+    assert_int_equal(outcome.status, 0);
+    assert_non_null(strstr(outcome.err, "the algorithm ./mine.so has changed; the old rows are kept in"));
+    outcome_free(&outcome);
+    origin_of("anew/measurements.csv", second, sizeof second);
+    assert_string_not_equal(first, second);
+    assert_cell("anew/measurements.csv", 0, "algorithm", "bp_nearest");
+    assert_cell("anew/measurements.csv", 0, "run_s", ours);
+    assert_cell("anew/measurements.csv", 1, "algorithm", "./mine.so");
+    free(ours);
+    assert_shell("mv kept.so mine.so", 0);
+}
+
+/* Two of one name in two folders are two algorithms. */
+static void names_stay_apart(void **state)
+{
+    (void)state;
+    assert_shell(
+        "mkdir 'a b' c && cp mine.so 'a b/'; sed 's/8, 1, 64/2, 1, 64/' mine.c >c/mine.c && ./plug c/mine c/mine.c", 0);
+    program_good(
+        (const char *const[ARGUMENTS_MAX]){"run", "study/quick", "-a", "a b/mine.so", "-a", "c/mine.so", "-o", "two"});
+    assert_cell("two/measurements.csv", 0, "algorithm", "a b/mine.so");
+    assert_cell("two/measurements.csv", 0, "options", "taps=8");
+    assert_cell("two/measurements.csv", 1, "algorithm", "c/mine.so");
+    assert_cell("two/measurements.csv", 1, "options", "taps=2");
+    program_good((const char *const[ARGUMENTS_MAX]){"report", "two"});
+    /* A file that names a shared object loads nothing. */
+    assert_shell("rm -r 'a b' c", 0);
+    program_good((const char *const[ARGUMENTS_MAX]){"report", "two"});
+}
+
+/* A plug-in compiled against an earlier header, which lacked the last field. */
+static void earlier_header_is_taken(void **state)
+{
+    (void)state;
+    assert_shell(
+        "mkdir -p earlier && sed '/const char \\*sweep;/d; /char skipped/d' include/sasbench.h >earlier/sasbench.h"
+        " && ! cmp -s earlier/sasbench.h include/sasbench.h"
+        " && sed 's/, \"2 4 8 16\"//' mine.c >early.c"
+        " && cc -std=gnu17 -O1 -fopenmp -Werror -shared -fPIC -Iearlier -o early.so early.c -lm",
+        0);
+    program_good((const char *const[ARGUMENTS_MAX]){"run", "study/quick", "-a", "./early.so", "-o", "early"});
+    assert_cell("early/measurements.csv", 0, "status", "ok");
+}
+
+/* What no plug-in is, by name. */
+static void faulty_objects_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *edit, *says[2];
+    } faults[] = {
+        {"symbol",
+         "s/sas_plugin =/another =/; s/sizeof sas_plugin/sizeof another/",
+         {"defines no `sas_plugin`", "symbol"}},
+        {"newer",
+         "s/SAS_ABI/SAS_ABI + 1/",
+         {"has ABI 2, of a newer sasbench.h; this program takes 1 to 1", "newer.so"}},
+        {"none", "s/SAS_ABI/0/", {"has ABI 0; this program takes", "none.so"}},
+        {"size",
+         "s/sizeof sas_plugin/sizeof sas_plugin + 8/",
+         {"struct sas_algorithm has 80 bytes, of a newer", "size.so"}},
+        {"small", "s/sizeof sas_plugin/16/", {"struct sas_algorithm has 16 bytes; this", "small.so"}},
+        {"setting", "s/{sizeof taps/{sizeof taps + 8/", {"settings of 80 bytes each", "newer sasbench.h"}},
+        {"initial", "s/8, 1, 64/65, 1, 64/", {"setting 1, 'taps': its default is not within", "initial.so"}},
+        {"callback", "s/make, execute/NULL, execute/", {"leaves out summary, reference, plan", "callback.so"}},
+        {"undefined", "s/SAS_OK;/SAS_OK + no_such_function();/", {"cannot be loaded", "no_such_function"}},
+    };
+    for (size_t k = 0; k < COUNT_OF(faults); k++) {
+        char lines[600], spec[40];
+        snprintf(spec, sizeof spec, "./%s.so", faults[k].name);
+        snprintf(lines, sizeof lines,
+                 "{ echo 'int no_such_function(void);'; sed '%s' mine.c; } >%s.c && ! cmp -s mine.c %s.c"
+                 " && ./plug %s -Wno-unused-function %s.c",
+                 faults[k].edit, faults[k].name, faults[k].name, faults[k].name, faults[k].name);
+        assert_shell(lines, 0);
+        const struct refusal refusal = {{"run", "study/quick", "-a", spec, "-o", "x"},
+                                        {faults[k].says[0], faults[k].says[1]}};
+        assert_all_refused(&refusal, 1);
+    }
+    text_write("text.so", "no object\n");
+    static const struct refusal refusals[] = {
+        {{"run", "study/quick", "-a", "./text.so", "-o", "x"}, {"text.so: cannot be loaded: ", "file too short"}},
+        {{"run", "study/quick", "-a", "absent.so", "-o", "x"}, {"absent.so: cannot be read: No such file"}},
+        {{"run", "study/quick", "-a", "./mine.so:tabs=3", "-o", "x"}, {"did you mean 'taps'?"}},
+        {{"run", "study/quick", "-a", "./mine.so:taps=65", "-o", "x"}, {"a whole number from 1 to 64"}},
+        {{"info", "absent.so"}, {"absent.so: cannot be read"}},
+    };
+    assert_all_refused(refusals, COUNT_OF(refusals));
+}
+
+/* A crash, a lie and a refusal lose their own row; the other algorithm keeps its own. */
+static void faults_lose_their_row(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *edit, *status, *reason;
+    } faults[] = {
+        {"crash", "s/host->stage(run, \"focus\")/raise(SIGSEGV)/", "failed", "ended by signal 11"},
+        {"ends", "s/host->stage(run, \"focus\")/exit(0)/", "failed", "ended the program with exit status 0"},
+        {"kept", "s/sum += value \\*/sum = 1 + value */", "failed", "the negated echoes is not the negated image"},
+        {"refuses", "0,/return SAS_OK/s//return problem->host->fail(SAS_UNSUPPORTED, \"%d pings\", a->pings)/",
+         "unsupported", "./refuses.so: 18 pings"},
+        {"silent", "0,/return SAS_OK/s//return 17/", "failed",
+         "./silent.so: its plan returned status 17, must be 0 to 3"},
+    };
+    for (size_t k = 0; k < COUNT_OF(faults); k++) {
+        char lines[600], spec[40], *reason;
+        snprintf(spec, sizeof spec, "./%s.so", faults[k].name);
+        snprintf(lines, sizeof lines,
+                 "{ echo '#include <signal.h>'; sed '%s' mine.c; } >%s.c && ./plug %s %s.c && rm -rf lost",
+                 faults[k].edit, faults[k].name, faults[k].name, faults[k].name);
+        assert_shell(lines, 0);
+        struct outcome outcome = program_run(
+            (const char *const[ARGUMENTS_MAX]){"run", "study/quick", "-a", spec, "-a", "bp_nearest", "-o", "lost"});
+        outcome_free(&outcome);
+        assert_cell("lost/measurements.csv", 0, "status", faults[k].status);
+        reason = cell_of("lost/measurements.csv", 0, "reason");
+        if (!strstr(reason, faults[k].reason))
+            fail_msg("%s: %s", faults[k].name, reason);
+        free(reason);
+        assert_cell("lost/measurements.csv", 1, "status", "ok");
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(header_is_public),         cmocka_unit_test(template_is_measured),
+        cmocka_unit_test(rebuilt_is_measured_anew), cmocka_unit_test(names_stay_apart),
+        cmocka_unit_test(earlier_header_is_taken),  cmocka_unit_test(faulty_objects_are_refused),
+        cmocka_unit_test(faults_lose_their_row),
+    };
+    return cmocka_run_group_tests_name("plugin", tests, plugin_make, folder_remove);
+}
