@@ -84,8 +84,11 @@ static enum status select_all(const char *const *ids, int count, struct selectio
     return status;
 }
 
+typedef enum status each_scene(struct batch *batch, const struct scene *scene, int spec_count,
+                               const struct spec *specs);
+
 /* All needs of one scene; those of `needs` that are done lose their scene. */
-static enum status scene_measure(struct batch *batch, struct need *needs, int count)
+static enum status scene_measure(struct batch *batch, struct need *needs, int count, each_scene *each)
 {
     struct scene scene;
     struct spec specs[NEEDS_MAX];
@@ -101,7 +104,7 @@ static enum status scene_measure(struct batch *batch, struct need *needs, int co
             needs[k].scene = NULL;
         }
     if (status == STATUS_OK)
-        status = batch_scene(batch, &scene, spec_count, specs);
+        status = each(batch, &scene, spec_count, specs);
     for (int k = 0; k < spec_count; k++)
         spec_free(&specs[k]);
     scene_free(&scene);
@@ -155,15 +158,26 @@ static bool rules_asked(const struct selection *selection)
     return asked;
 }
 
+/* Does it with each scene. */
+static enum status scenes_measure(struct batch *batch, const struct need *needs, int count, each_scene *each)
+{
+    struct need left[NEEDS_MAX];
+    enum status status = STATUS_OK;
+    memcpy(left, needs, (size_t)count * sizeof *left);
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (left[k].scene)
+            status = scene_measure(batch, left + k, count - k, each);
+    return status;
+}
+
 /* Needs into a folder, which is made, without times. */
 static enum status needs_measure(const char *directory, struct need *needs, int count)
 {
     struct batch batch = {0};
     enum status status = batch_open(directory, count, false, &batch);
     batch.effort = EFFORT_NONE;
-    for (int k = 0; k < count && status == STATUS_OK; k++)
-        if (needs[k].scene)
-            status = scene_measure(&batch, needs + k, count - k);
+    if (status == STATUS_OK)
+        status = scenes_measure(&batch, needs, count, batch_scene);
     return batch_close(&batch, status);
 }
 
@@ -176,51 +190,80 @@ static bool figure_asked(const void *of, const char *id)
     return asked;
 }
 
-enum status papers_reproduce(const char *const *ids, int count, const char *directory)
+/* What the folder's measurements say. */
+static enum status selection_report(struct batch *batch, const struct selection *selection, bool measured)
+{
+    const char *directory = batch->directory;
+    bool predicted = false;
+    enum status status = STATUS_OK;
+    if (phases_asked(selection))
+        status = phase_study(directory, true);
+    if (status == STATUS_OK && rules_asked(selection))
+        status = rules_study(directory);
+    if (status == STATUS_OK)
+        status = figures_draw(directory, figure_asked, selection, &batch->undrawn);
+    if (status == STATUS_OK)
+        status = reproduced_report(directory, selection);
+    if (status == STATUS_OK && measured)
+        status = predicted_write(directory, NULL, 0, &predicted);
+    if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
+        shown_note(status_message());
+        batch->undrawn++;
+    }
+    return status;
+}
+
+static enum status selection_reproduce(const struct selection *selection, const struct shard *shard,
+                                       const char *directory)
 {
     struct need needs[NEEDS_MAX];
+    struct batch batch;
+    const int count = needs_collect(selection, needs);
+    enum status status = batch_open(directory, count, false, &batch);
+    batch.shard = *shard;
+    if (status == STATUS_OK)
+        status = scenes_measure(&batch, needs, count, batch_cells);
+    if (status == STATUS_OK)
+        status = batch_deal(&batch);
+    if (status == STATUS_OK)
+        status = scenes_measure(&batch, needs, count, batch_scene);
+    if (status == STATUS_OK && batch_whole(&batch))
+        status = selection_report(&batch, selection, count > 0);
+    return batch_close(&batch, status);
+}
+
+static enum status sensitivity_reproduce(const char *directory, const struct claims *claims)
+{
+    int lock = -1;
+    enum status status = directory_make(directory);
+    if (status == STATUS_OK)
+        status = folder_take(directory, &lock);
+    if (status == STATUS_OK)
+        status = sensitivity_study(directory, claims, needs_measure);
+    folder_leave(lock);
+    return status;
+}
+
+enum status papers_reproduce(const char *const *ids, int count, const char *directory, const char *part)
+{
     struct claims claims = {0};
     struct selection selection = {.claims = &claims};
-    struct batch batch = {0};
-    enum status status = directory_check(directory);
+    struct shard shard;
+    const bool sensitivity = count == 1 && strcmp(ids[0], "sensitivity") == 0;
+    enum status status = shard_parse("reproduce", part, &shard);
+    if (status == STATUS_OK && sensitivity && part)
+        status =
+            status_set(STATUS_INVALID, "reproduce: --shard %s: sensitivity is measured as a whole, without it", part);
+    if (status == STATUS_OK)
+        status = directory_check(directory);
     if (status == STATUS_OK)
         status = claims_read(CLAIMS_FILE, &claims);
-    bool sensitivity = count == 1 && strcmp(ids[0], "sensitivity") == 0;
     if (status == STATUS_OK && sensitivity) {
-        int lock = -1;
-        status = directory_make(directory);
-        if (status == STATUS_OK)
-            status = folder_take(directory, &lock);
-        if (status == STATUS_OK)
-            status = sensitivity_study(directory, &claims, needs_measure);
-        folder_leave(lock);
-        claims_free(&claims);
-        return status;
-    }
-    if (status == STATUS_OK)
+        status = sensitivity_reproduce(directory, &claims);
+    } else if (status == STATUS_OK) {
         status = select_all(ids, count, &selection);
-    if (status == STATUS_OK) {
-        int need_count = needs_collect(&selection, needs);
-        status = batch_open(directory, need_count, false, &batch);
-        for (int k = 0; k < need_count && status == STATUS_OK; k++)
-            if (needs[k].scene)
-                status = scene_measure(&batch, needs + k, need_count - k);
-        if (status == STATUS_OK && phases_asked(&selection))
-            status = phase_study(directory, true);
-        if (status == STATUS_OK && rules_asked(&selection))
-            status = rules_study(directory);
         if (status == STATUS_OK)
-            status = figures_draw(directory, figure_asked, &selection, &batch.undrawn);
-        if (status == STATUS_OK)
-            status = reproduced_report(directory, &selection);
-        bool predicted = false;
-        if (status == STATUS_OK && need_count > 0)
-            status = predicted_write(directory, NULL, 0, &predicted);
-        if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
-            shown_note(status_message());
-            batch.undrawn++;
-        }
-        status = batch_close(&batch, status);
+            status = selection_reproduce(&selection, &shard, directory);
     }
     claims_free(&claims);
     return status;

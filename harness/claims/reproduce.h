@@ -5,10 +5,11 @@
 #include "claims/claims.h"
 #include "contract/status.h"
 
-/* The tables of these ids (all of them when count is 0), measured where the folder does not have them yet. Errors:
+/* The tables of these ids (all of them when count is 0), measured where the folder does not have them yet. A shard
+   ("3/8", NULL: none) is measured alone. Errors:
    STATUS_INVALID for an unknown id (listing the accepted ones), a folder whose claims.csv is the list of claims, or
    files that cannot be read or written; STATUS_FAILED when a measurement failed. */
-enum status papers_reproduce(const char *const *ids, int count, const char *directory);
+enum status papers_reproduce(const char *const *ids, int count, const char *directory, const char *part);
 
 enum { TABLES_MAX = 64 };
 

@@ -5,5 +5,6 @@
 
 enum status command_reproduce(const struct task *task)
 {
-    return papers_reproduce(task->names, task->name_count, task->output ? task->output : "results/reproduce");
+    return papers_reproduce(task->names, task->name_count, task->output ? task->output : "results/reproduce",
+                            task->shard);
 }

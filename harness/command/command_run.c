@@ -51,8 +51,11 @@ enum status command_run(const struct task *task)
     struct scene *scenes = NULL;
     int scene_count = 0;
     struct batch batch = {0};
+    struct shard shard;
     machine_rates_use(NULL);
-    enum status status = check_twice(task);
+    enum status status = shard_parse("run", task->shard, &shard);
+    if (status == STATUS_OK)
+        status = check_twice(task);
     if (status == STATUS_OK)
         status = task_scenes("run", task, 0, NULL, &scenes, &scene_count);
     if (status == STATUS_OK)
@@ -61,15 +64,21 @@ enum status command_run(const struct task *task)
     if (batch.rows > ROWS_MANY)
         batch.effort = EFFORT_BRIEF;
     batch.works = task->flops;
+    batch.shard = shard;
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++)
+        status = batch_cells(&batch, &scenes[k], task->spec_count, task->specs);
+    if (status == STATUS_OK)
+        status = batch_deal(&batch);
     if (task->all)
         table_begin(stdout, false);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = batch_scene(&batch, &scenes[k], task->spec_count, task->specs);
+    const bool whole = status == STATUS_OK && batch_whole(&batch);
     const double begin = seconds_now();
-    if (status == STATUS_OK)
+    if (whole)
         status = plot_results(batch.directory, NULL, &batch.undrawn);
     batch.drawn_s += seconds_now() - begin;
-    if (status == STATUS_OK)
+    if (whole && status == STATUS_OK)
         status = summary_print(&batch, scene_count, scenes, task->spec_count, task->specs,
                                task->all || batch.rows <= ROWS_MANY);
     status = batch_close(&batch, status);

@@ -10,6 +10,7 @@ enum status command_stability(const struct task *task)
                                               .scenes = task->names,
                                               .specs = task->specs,
                                               .directory = task->output ? task->output : "results/stability",
-                                              .quick = task->quick};
+                                              .quick = task->quick,
+                                              .shard = task->shard};
     return stability_run(&request, STABILITY_EXPECTED);
 }

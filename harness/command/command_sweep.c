@@ -58,43 +58,62 @@ static enum status precision_check(const struct task *task)
     return status_set(STATUS_INVALID, "sweep: --precision is '%s', must be float or double", task->precision);
 }
 
-enum status command_sweep(const struct task *task)
+/* Tables and pictures of one scene. */
+static enum status scene_finish(struct batch *batch, const struct scene *scenes, int scene_count, int k)
 {
-    const char *directory = task->output ? task->output : "results/sweep";
-    int default_count = sizeof default_scenes / sizeof *default_scenes, scene_count = 0;
-    struct scene *scenes = NULL;
-    struct sweep_settings settings = {0};
-    struct batch batch = {0};
-    enum status status = precision_check(task);
-    if (status == STATUS_OK)
-        status = settings_load(task, &settings);
-    if (status == STATUS_OK)
-        status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
-    if (status == STATUS_OK)
-        status = batch_open(directory, scene_count * settings.count, false, &batch);
-    if (status == STATUS_OK && settings_choose(&settings))
-        status = machine_rates_need();
-    batch.in_turn = true;
-    if (task->all)
-        table_begin(stdout, false);
-    for (int k = 0; k < scene_count && status == STATUS_OK; k++) {
-        status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
-        if (status == STATUS_OK)
-            status = sweep_tables(directory, scenes, scene_count, scenes[k].name);
-        if (status == STATUS_OK)
-            status = plot_results(directory, scenes[k].name, &batch.undrawn);
-    }
+    const enum status status = sweep_tables(batch->directory, scenes, scene_count, scenes[k].name);
+    return status == STATUS_OK ? plot_results(batch->directory, scenes[k].name, &batch->undrawn) : status;
+}
+
+static enum status sweep_finish(struct batch *batch, const struct scene *scenes, int scene_count)
+{
+    const char *directory = batch->directory;
     bool predicted = false;
-    if (status == STATUS_OK)
-        status = predicted_write(directory, scenes, scene_count, &predicted);
+    enum status status = predicted_write(directory, scenes, scene_count, &predicted);
     if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
         shown_note(status_message());
-        batch.undrawn++;
+        batch->undrawn++;
     }
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv%s "
                "and plots.\n",
                directory, predicted ? ", predicted.csv, predictions.csv" : "");
+    return status;
+}
+
+enum status command_sweep(const struct task *task)
+{
+    int default_count = sizeof default_scenes / sizeof *default_scenes, scene_count = 0;
+    struct scene *scenes = NULL;
+    struct sweep_settings settings = {0};
+    struct batch batch = {0};
+    struct shard shard;
+    enum status status = shard_parse("sweep", task->shard, &shard);
+    if (status == STATUS_OK)
+        status = precision_check(task);
+    if (status == STATUS_OK)
+        status = settings_load(task, &settings);
+    if (status == STATUS_OK)
+        status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
+    if (status == STATUS_OK)
+        status = batch_open(task->output ? task->output : "results/sweep", scene_count * settings.count, false, &batch);
+    if (status == STATUS_OK && settings_choose(&settings))
+        status = machine_rates_need();
+    batch.in_turn = true;
+    batch.shard = shard;
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++)
+        status = batch_cells(&batch, &scenes[k], settings.count, settings.specs);
+    if (status == STATUS_OK)
+        status = batch_deal(&batch);
+    if (task->all)
+        table_begin(stdout, false);
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++) {
+        status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
+        if (status == STATUS_OK && shard.count == 0)
+            status = scene_finish(&batch, scenes, scene_count, k);
+    }
+    if (status == STATUS_OK && batch_whole(&batch))
+        status = sweep_finish(&batch, scenes, scene_count);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
     settings_free(&settings);

@@ -11,7 +11,7 @@ struct task {
     const char *const *names; /* [name_count] arguments without an option: scenes, an algorithm */
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *time, *memory,
-        *seed, *name, *seconds, *tile, *threads;
+        *seed, *name, *seconds, *tile, *threads, *shard;
     bool ab, quick, all, flops, verify;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
@@ -59,6 +59,7 @@ enum status command_image(const struct task *task);
 struct image_origin;
 enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin);
 enum status command_filter(const struct task *task);
+enum status command_merge(const struct task *task);
 enum status command_score(const struct task *task);
 enum status command_show(const struct task *task);
 enum status command_run(const struct task *task);

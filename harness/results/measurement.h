@@ -21,6 +21,8 @@ struct measurement {
     double width_m, pslr_db, islr_db;           /* null definition, azimuth, medians over the targets */
     double run_q1_s, run_q3_s;                  /* quartiles of the runs; NAN for less than 4 */
     double entropy, contrast, peak_over_median; /* metrics_sharpness; NAN where only a part was imaged */
+    const char *host;                           /* that measured it */
+    double load;                                /* ready processes there, the system's mean over the last minute */
 };
 
 /* One row of targets.csv. */
@@ -53,6 +55,7 @@ struct column {
         bool wide;                /* on a wide terminal only */
         enum { SHOWN_OF_ALL, SHOWN_OF_TARGETS, SHOWN_WITHOUT_TARGETS } of; /* the last two share one place */
     } shown;
+    bool later; /* files of earlier versions end before it */
 };
 extern const struct column measurement_columns[], target_columns[];
 

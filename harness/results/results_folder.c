@@ -4,6 +4,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,10 +94,10 @@ static enum status file_rewrite(struct results_folder *folder, int kind, const s
             continue;
         if (!measurement_present(&old[KIND_MEASUREMENTS], &old[kind], row))
             continue;
-        for (int k = 0; k < old[kind].column_count; k++) {
+        for (int k = 0; row_kinds[kind].columns[k].name; k++) {
             if (k)
                 fputc(',', file);
-            csv_write_text(file, csv_cell(&old[kind], row, k));
+            csv_write_text(file, k < old[kind].column_count ? csv_cell(&old[kind], row, k) : "");
         }
         fputc('\n', file);
     }
@@ -409,9 +411,15 @@ enum status results_folder_targets(struct results_folder *folder, const struct t
 
 enum status results_folder_add(struct results_folder *folder, const struct measurement *row)
 {
+    struct measurement stamped = *row;
+    char host[HOST_NAME_MAX + 1] = "";
+    if (gethostname(host, sizeof host - 1) == 0)
+        stamped.host = host;
+    if (getloadavg(&stamped.load, 1) != 1)
+        stamped.load = NAN;
     enum status status =
         earlier_replace(folder, &(struct key){row->scene, row->algorithm, row->options, row->precision});
-    return status ? status : rows_append(folder, KIND_MEASUREMENTS, row, 1, sizeof *row);
+    return status ? status : rows_append(folder, KIND_MEASUREMENTS, &stamped, 1, sizeof stamped);
 }
 
 enum status results_folder_close(struct results_folder *folder)

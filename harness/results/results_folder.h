@@ -23,7 +23,8 @@ enum status results_folder_algorithm(struct results_folder *folder, const char *
 const struct measurement *results_folder_find(const struct results_folder *folder, const char *scene,
                                               const char *algorithm, const char *options, const char *precision);
 /* Append, onto the disk. A measurement's target rows are added before the measurement itself, so a measurement in
-   the file is complete. The next run drops target rows without their measurement. Errors: STATUS_FAILED. */
+   the file is complete; it gets this host's name and load. The next run drops target rows without their measurement.
+   Errors: STATUS_FAILED. */
 enum status results_folder_targets(struct results_folder *folder, const struct target_row *rows, int count);
 enum status results_folder_add(struct results_folder *folder, const struct measurement *row);
 /* Errors: STATUS_FAILED for a file that cannot be closed. Accepts NULL. */

@@ -90,6 +90,8 @@ enum status header_check(const struct csv *csv, const struct row_kind *kind)
                           count, kind->columns[0].name);
     for (int k = 0; k < count; k++) {
         const bool missing = k >= csv->column_count;
+        if (missing && kind->columns[k].later)
+            return STATUS_OK;
         char found[64] = "missing";
         if (!missing)
             snprintf(found, sizeof found, "'%.60s'", csv->columns[k]);
@@ -129,7 +131,10 @@ enum status row_parse(const struct csv *csv, int row, const struct row_kind *kin
 {
     enum status status = STATUS_OK;
     for (int k = 0; kind->columns[k].name && status == STATUS_OK; k++)
-        status = cell_parse(csv, row, k, &kind->columns[k], out);
+        if (k < csv->column_count)
+            status = cell_parse(csv, row, k, &kind->columns[k], out);
+        else
+            column_clear(&kind->columns[k], out);
     return status;
 }
 

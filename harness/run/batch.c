@@ -4,6 +4,7 @@
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "advise/check.h"
 #include "echoes/echo_data.h"
@@ -94,7 +95,8 @@ static void heading_print(const struct scene *scene)
     check_warnings(stdout, scene, false);
 }
 
-enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
+static enum status part_measure(struct batch *batch, const struct scene *scene, int spec_count,
+                                const struct spec *specs)
 {
     struct visit visit;
     int missing = 0;
@@ -146,6 +148,49 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
     return status;
 }
 
+enum status batch_cells(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
+{
+    return batch->shard.count > 0 ? cells_add(&batch->cells, scene, spec_count, specs) : STATUS_OK;
+}
+
+enum status batch_deal(struct batch *batch)
+{
+    enum status status = cells_deal(&batch->cells, &batch->shard);
+    if (batch->shard.count == 0 || status != STATUS_OK)
+        return status;
+    batch->details = batch->works = false;
+    batch->rows = 0;
+    for (int n = 0; n < batch->cells.count; n++)
+        batch->rows += batch->cells.list[n].mine;
+    return STATUS_OK;
+}
+
+bool batch_whole(const struct batch *batch)
+{
+    if (batch->shard.count > 0)
+        printf("\nShard %d/%d: %d of %d cells are in %s. When all are done: ./sasbench merge FOLDER ... -o DIR\n",
+               batch->shard.number, batch->shard.count, batch->rows, batch->cells.count, batch->directory);
+    return batch->shard.count == 0;
+}
+
+enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
+{
+    if (batch->shard.count == 0)
+        return part_measure(batch, scene, spec_count, specs);
+    struct spec *part = malloc((size_t)spec_count * sizeof *part + 1);
+    int count = 0;
+    if (!part)
+        return status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
+    for (int k = 0; k < spec_count; k++) {
+        const int n = cells_find(&batch->cells, scene->name, &specs[k]);
+        if (n >= 0 && batch->cells.list[n].mine)
+            part[count++] = specs[k];
+    }
+    const enum status status = count > 0 ? part_measure(batch, scene, count, part) : STATUS_OK;
+    free(part);
+    return status;
+}
+
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch)
 {
     struct provenance provenance;
@@ -170,6 +215,7 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
 
 enum status batch_close(struct batch *batch, enum status status)
 {
+    cells_free(&batch->cells);
     if (!batch->results)
         return status;
     enum status closed = results_folder_close(batch->results);

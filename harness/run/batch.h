@@ -2,6 +2,7 @@
 #ifndef SASBENCH_RUN_BATCH_H
 #define SASBENCH_RUN_BATCH_H
 
+#include "ranks/cells.h"
 #include "results/provenance.h"
 #include "results/results_folder.h"
 #include "measure/session.h"
@@ -19,6 +20,8 @@ struct batch {
     bool in_turn;       /* time settings by rounds, so that a disturbed minute does not hit one setting alone */
     bool failed;        /* a measurement failed */
     int undrawn;        /* pictures that could not be drawn */
+    struct shard shard;
+    struct cells cells; /* where other processes take a part of them; else none */
     /* For the progress line: */
     int done, rows, measured; /* rows behind, rows in all, rows measured now */
     double begin;             /* monotonic clock, s: at the start */
@@ -31,6 +34,13 @@ enum { ROWS_MANY = 100 }; /* `run` times more rows than these briefly, and shows
 /* Open the folder (results_folder_open: finished rows of an earlier run are kept) and begin the terminal's table.
    rows: the number of measurements to come. Errors: as results_folder_open; *batch is then safe to close. */
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch);
+
+/* Before the first scene: take a part of the cells alone, those of `shard`; all where it is none. A part is not drawn.
+   batch_cells, of the scenes one by one; then batch_deal. Errors: STATUS_FAILED without memory. */
+enum status batch_cells(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs);
+enum status batch_deal(struct batch *batch);
+/* Are all cells of the run in the folder, so that tables and pictures of them can be made? If not, that is printed. */
+bool batch_whole(const struct batch *batch);
 
 /* Measure one scene with every spec: echoes and exact image once, then for each spec a row in the CSVs and on the
    terminal as soon as it is done. Existing rows are only printed; if an interrupted run left a picture of the scene

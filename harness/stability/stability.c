@@ -1,6 +1,7 @@
 /* The run over extreme scenes (stability.h). */
 #include "stability/stability.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 
 #include "files/folder.h"
 #include "files/paths.h"
+#include "ranks/cells.h"
 #include "run/progress_line.h"
 #include "text/shown_text.h"
 #include "results/provenance.h"
@@ -91,6 +93,60 @@ static enum status scenes_choose(const struct stability_request *request, struct
     return status;
 }
 
+/* Is a scene of this shard, by the work of its exact image? Those that are refused, which take no time, are the first
+   shard's. */
+static enum status scene_is_mine(const struct cells *cells, const char *name, const struct shard *shard,
+                                 const struct spec *exact, bool *mine)
+{
+    struct scene scene;
+    const enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    *mine = shard->number == 1;
+    if (status != STATUS_OK)
+        return status == STATUS_INVALID ? STATUS_OK : status;
+    *mine = cells->list[cells_find(cells, scene.name, exact)].mine;
+    scene_free(&scene);
+    return STATUS_OK;
+}
+
+/* Drop the scenes of other shards. With one thread: processes that are forked later could not use the others. */
+static enum status scenes_share(struct run *run, const struct shard *shard)
+{
+    const int threads = omp_get_max_threads();
+    struct cells cells = {.list = NULL};
+    struct spec exact;
+    int count = 0;
+    enum status status = spec_parse("reference:precision=double", &exact);
+    if (status != STATUS_OK)
+        return status;
+    omp_set_num_threads(1);
+    for (int k = 0; k < run->scene_count && status != STATUS_FAILED; k++) {
+        struct scene scene;
+        status = scene_load(run->scenes[k], SCENE_DIRECTORY, &scene);
+        if (status == STATUS_OK) {
+            status = cells_add(&cells, &scene, 1, &exact);
+            scene_free(&scene);
+        }
+    }
+    if (status != STATUS_FAILED)
+        status = cells_deal(&cells, shard);
+    for (int k = 0; k < run->scene_count && status == STATUS_OK; k++) {
+        bool mine;
+        status = scene_is_mine(&cells, run->scenes[k], shard, &exact, &mine);
+        if (status == STATUS_OK && !mine) {
+            free(run->scenes[k]);
+            run->scenes[k] = NULL;
+        }
+    }
+    for (int k = 0; k < run->scene_count; k++)
+        if (run->scenes[k])
+            run->scenes[count++] = run->scenes[k];
+    run->scene_count = count;
+    omp_set_num_threads(threads);
+    cells_free(&cells);
+    spec_free(&exact);
+    return status;
+}
+
 /* A SPEC in the precision that it names, or in both. */
 static enum status spec_add(struct run *run, const struct spec *spec)
 {
@@ -167,8 +223,13 @@ static enum status scene_check(struct run *run, int index)
 
 static enum status run_open(const struct stability_request *request, struct run *run)
 {
+    struct shard shard;
     *run = (struct run){.mode_count = request->quick ? QUICK_MODES : TRIAL_MODES};
-    enum status status = scenes_choose(request, run);
+    enum status status = shard_parse("stability", request->shard, &shard);
+    if (status == STATUS_OK)
+        status = scenes_choose(request, run);
+    if (status == STATUS_OK && shard.count > 0)
+        status = scenes_share(run, &shard);
     if (status == STATUS_OK)
         status = specs_choose(request, run);
     if (status == STATUS_OK) {

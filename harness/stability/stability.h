@@ -13,6 +13,7 @@ struct stability_request {
     const struct spec *specs;  /* none: every algorithm, with plain paths and engines as well */
     const char *directory;     /* for stability.csv, expected.csv and stability.png */
     bool quick;                /* two of the four rounding modes */
+    const char *shard;         /* "3/8": these scenes alone; NULL: all */
 };
 
 /* Print the table, write the files, and compare with the expected verdicts and bounds in `expected`. Errors:

@@ -12,6 +12,7 @@
 #include "files/csv.h"
 #include "scene/random.h"
 #include "tests/command/program.h"
+#include "tests/command/same_rows.h"
 
 /* SASBENCH_KILLS in the environment: more of them, for a long run by hand. */
 static int kills_wanted(void)
@@ -39,50 +40,6 @@ static bool kill_after(const char *const *arguments, double seconds, int number)
     assert_int_equal(waitpid(child, &status, 0), child);
     fclose(sink);
     return WIFSIGNALED(status) && WTERMSIG(status) == number;
-}
-
-/* Up to what a reason says of the times' spread, which stands at its end. */
-static size_t length_without_noise(const char *text)
-{
-    const char *noise = strstr(text, "warning: times scatter"); /* outcome.h */
-    size_t length = noise ? (size_t)(noise - text) : strlen(text);
-    return length >= 2 && noise && strncmp(noise - 2, "; ", 2) == 0 ? length - 2 : length;
-}
-
-static bool same_cell(const char *a, const char *b)
-{
-    size_t length = length_without_noise(a);
-    return length == length_without_noise(b) && strncmp(a, b, length) == 0;
-}
-
-/* Two files row by row, whatever their order, but for what is measured in seconds. */
-static void assert_same_rows(const char *whole, const char *killed)
-{
-    static const char *const seconds[] = {"plan_s", "run_s",    "run_min_s", "runs",
-                                          "stages", "run_q1_s", "run_q3_s",  "control_s"};
-    struct csv a, b;
-    assert_int_equal(csv_read(path_of(whole), CSV_TAIL_KEEP, &a), STATUS_OK);
-    assert_int_equal(csv_read(path_of(killed), CSV_TAIL_KEEP, &b), STATUS_OK);
-    if (a.row_count != b.row_count || a.column_count != b.column_count)
-        fail_msg("%s has %d rows of %d columns, undisturbed %d of %d", killed, b.row_count, b.column_count, a.row_count,
-                 a.column_count);
-    bool timed[64] = {false};
-    for (size_t k = 0; k < COUNT_OF(seconds); k++)
-        if (csv_column(&a, seconds[k]) >= 0)
-            timed[csv_column(&a, seconds[k])] = true;
-    for (int row = 0; row < a.row_count; row++) {
-        bool found = false;
-        for (int other = 0; other < b.row_count && !found; other++) {
-            found = true;
-            for (int k = 0; k < a.column_count && found; k++)
-                found = timed[k] || same_cell(csv_cell(&a, row, k), csv_cell(&b, other, k));
-        }
-        if (!found)
-            fail_msg("%s: row %d of the undisturbed file is not there: %s %s %s", killed, row + 1, csv_cell(&a, row, 0),
-                     csv_cell(&a, row, 1), csv_cell(&a, row, 2));
-    }
-    csv_free(&a);
-    csv_free(&b);
 }
 
 static int name_order(const void *a, const void *b)
@@ -123,14 +80,10 @@ static void check_resumed(const char *name, const char *const *whole, const char
         hits += kill_after(killed, duration * (k + random_uniform(&random)) / (count + 1), numbers[k % 3]);
     assert_true(hits > 0);
     program_good(killed);
-    char folders[2][40], files[2][60];
+    char folders[2][40];
     for (int k = 0; k < 2; k++)
         snprintf(folders[k], sizeof folders[k], "%s%s", name, k ? "-killed" : "");
-    for (int file = 0; file < 2; file++) {
-        for (int k = 0; k < 2; k++)
-            snprintf(files[k], sizeof files[k], "%.40s/%s", folders[k], file ? "targets.csv" : "measurements.csv");
-        assert_same_rows(files[0], files[1]);
-    }
+    assert_same_results(folders[0], folders[1]);
     char *wanted = names_of(folders[0]), *names = names_of(folders[1]);
     assert_string_equal(names, wanted);
     free(wanted);

@@ -1,4 +1,5 @@
 /* The results folder through cuts and changes. */
+#include <limits.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,7 +15,9 @@
 static void test_round_trip(void **state)
 {
     (void)state;
+    char host[HOST_NAME_MAX + 1] = "", wanted[200];
     struct results_folder *results = open_ok("c1", 2);
+    assert_int_equal(gethostname(host, sizeof host - 1), 0);
     assert_int_equal(results_folder_scene(results, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
     add_ok(results, "folder/a,\"b\"", "bp_sinc");
     const char *text = file_text(measurements_path);
@@ -26,7 +29,9 @@ static void test_round_trip(void **state)
     assert_non_null(strstr(
         text, "\n" MEASUREMENT_HEADER "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,2,general,ok,,"
               "\"half \"\"of\"\" it,?and more\",0.25,0.333333333,0.3,5,2,compress=0.1;focus=0.9,,1e+12,"
-              "1.23456789e+10,4096,1e-07,,0.001,0.0384,-13.3,-10.4,0.32,0.34,4.5,2,\n"));
+              "1.23456789e+10,4096,1e-07,,0.001,0.0384,-13.3,-10.4,0.32,0.34,4.5,2,,"));
+    snprintf(wanted, sizeof wanted, ",4.5,2,,%s,", host); /* and the load */
+    assert_true(strtod(strstr(text, wanted) + strlen(wanted), NULL) >= 0);
     text = file_text(targets_path);
     assert_int_equal(strncmp(text, "# sasbench targets 1\n", 21), 0);
     assert_non_null(strstr(text, "\n" TARGET_HEADER "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,3,"
@@ -50,6 +55,26 @@ static void test_round_trip(void **state)
     results_folder_close(results);
     assert_int_equal(rows_of(measurements_path), 2);
     assert_int_equal(rows_of(targets_path), 2);
+}
+
+/* A row without the columns that later versions added is continued, and has them empty. */
+static void test_earlier_columns(void **state)
+{
+    (void)state;
+    static const char earlier[] = "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,"
+                                  "run_min_s,runs,control_s,stages,flops_published,flops,pairs,bytes,error,error_gain,"
+                                  "phase_rms_rad,width_m,pslr_db,islr_db,run_q1_s,run_q3_s,entropy,contrast,"
+                                  "peak_over_median\n",
+                      row[] = "s,a,,float,2,,ok,,,1,1,1,5,,,,,,,,,,,,,,,,,7";
+    char text[2000];
+    snprintf(text, sizeof text, "# sasbench measurements 1\n" PROVENANCE "%s%s\n", earlier, row);
+    file_write(measurements_path, "w", text);
+    file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE TARGET_HEADER);
+    struct results_folder *results = open_ok("c1", 2);
+    assert_non_null(results_folder_find(results, "s", "a", "", "float"));
+    results_folder_close(results);
+    snprintf(text, sizeof text, "\n%s%s,,\n", MEASUREMENT_HEADER, row);
+    assert_non_null(strstr(file_text(measurements_path), text));
 }
 
 static void test_undefined_fields(void **state)
@@ -294,6 +319,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_round_trip, results_make, results_remove),
+        cmocka_unit_test_setup_teardown(test_earlier_columns, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_undefined_fields, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_other_run, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_kept_twice, results_make, results_remove),
