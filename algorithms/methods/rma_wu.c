@@ -8,7 +8,7 @@
 static const struct rma_method method = {
     .name = "rma_wu",
     .law = "wu_law",
-    .error_limit = 0.12, /* as for rma_pca */
+    .error_limit = 0.25, /* as for rma_pca */
     .spectrum = spectrum_wu,
     .source = "LBF21 Eq. (22)",
     .range = {4, 2},

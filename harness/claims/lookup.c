@@ -4,9 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "files/paths.h"
 #include "text/text_append.h"
 #include "imaging/spec.h"
 #include "papers/tables.h"
@@ -40,11 +38,11 @@ struct call {
 
 static enum status scene_check(const struct formula *formula, const struct call *call, int k)
 {
-    char path[4200];
-    snprintf(path, sizeof path, "%s/%s.cfg", SCENE_DIRECTORY, call->text[k]);
-    return *call->text[k] && access(path, R_OK) == 0
+    return assumed_scene_exists(call->text[k])
                ? STATUS_OK
-               : formula_error(formula, call->at[k], "there is no scene '%s'; a name below scenes/ is accepted",
+               : formula_error(formula, call->at[k],
+                               "there is no scene '%s'; a name below scenes/ is accepted, and @ with one of the "
+                               "assumptions of the sensitivity behind it",
                                call->text[k]);
 }
 
@@ -53,7 +51,7 @@ static enum status spec_check(struct formula *formula, struct call *call, int k)
 {
     struct spec spec;
     char message[400], text[sizeof call->text[0]];
-    formula->by_scheme |= scheme_spec(formula->scheme, call->text[k], text, sizeof text);
+    formula->by_scheme |= scheme_spec(formula->scheme, assumed_text(call->text[k]), text, sizeof text);
     strcpy(call->text[k], text);
     const enum status status = spec_parse(call->text[k], &spec);
     snprintf(message, sizeof message, "%s", status == STATUS_OK ? "" : status_message());
@@ -65,6 +63,8 @@ static enum status spec_check(struct formula *formula, struct call *call, int k)
 static enum status word_check(const struct formula *formula, struct call *call, int k, const char *const *words)
 {
     char accepted[300] = "";
+    const char *text = assumed_text(call->text[k]);
+    memmove(call->text[k], text, strlen(text) + 1); /* may be the same text */
     for (int n = 0; words[n]; n++) {
         call->word = n;
         if (strcmp(words[n], call->text[k]) == 0)

@@ -10,14 +10,12 @@
 
 enum { NEEDS_MAX = 256, SETS_MAX = 12 };
 
-/* Is it of the papers that the sets are for, and of a scene? Full-size scenes are out, as they are for times, and
-   scenes from seeds, which the sets do not change. */
+/* Is it of a scene? Full-size scenes are out, as they are for times, and scenes from seeds, which the sets do not
+   change. */
 static bool takes_part(const struct claim *claim)
 {
     bool scenes = claim->need_count > 0 || claim->phases || claim->scenes;
-    bool paper =
-        strcmp(claim->paper, "BP22") == 0 || strcmp(claim->paper, "ZP15") == 0 || strcmp(claim->paper, "LBF21") == 0;
-    return paper && comparison_decides(claim->comparison) && scenes && !claim->rules && !claim->times;
+    return comparison_decides(claim->comparison) && scenes && !claim->rules && !claim->times;
 }
 
 struct set_verdicts {
@@ -30,9 +28,11 @@ static int needs_collect(const struct claims *claims, const struct assumptions *
     int count = 0;
     for (int k = 0; k < claims->count; k++)
         for (int n = 0; n < claims->claims[k].need_count && takes_part(&claims->claims[k]); n++) {
-            const char *scene = claims->claims[k].needs[n].scene;
-            if (set == assumption_sets || strcmp(assumed_scene_name(scene), scene) != 0)
-                count = need_add(needs, count, NEEDS_MAX, claims->claims[k].needs[n]);
+            const struct need *need = &claims->claims[k].needs[n];
+            const char *spec = assumed_text(need->spec);
+            if (set == assumption_sets || strcmp(assumed_scene_name(need->scene), need->scene) != 0
+                || spec != need->spec)
+                count = need_add(needs, count, NEEDS_MAX, (struct need){need->scene, spec});
         }
     return count;
 }

