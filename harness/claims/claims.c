@@ -21,6 +21,7 @@ static const struct {
     {"criterion", offsetof(struct claim, criterion)},
     {"comparison", offsetof(struct claim, comparison)},
     {"arguments", offsetof(struct claim, arguments)},
+    {"changed", offsetof(struct claim, changed)},
 };
 enum { COLUMNS = sizeof columns / sizeof *columns };
 static const char *const number_columns[] = {"of", "name", "definition", NULL};
@@ -32,7 +33,7 @@ static enum status row_read(const struct csv *csv, int row, struct claim *claim)
     *claim = (struct claim){.line = csv->lines[row]};
     for (int k = 0; k < COLUMNS; k++) {
         const char *cell = csv_cell(csv, row, k);
-        if (!*cell && strcmp(columns[k].name, "arguments") != 0)
+        if (!*cell && strcmp(columns[k].name, "arguments") != 0 && strcmp(columns[k].name, "changed") != 0)
             return status_set(STATUS_INVALID, "%s: line %d: column %s is empty; a text is needed", csv->path,
                               csv->lines[row], columns[k].name);
         memcpy((char *)claim + columns[k].offset, &cell, sizeof cell);
@@ -186,6 +187,8 @@ static void evidence_begin(struct evaluation *evaluation, const struct formula *
     }
     text_append(evaluation->evidence, size, "; %s: %s",
                 comparison_decides(claim->comparison) ? "criterion" : "no criterion", claim->criterion);
+    if (*claim->changed)
+        text_append(evaluation->evidence, size, "; criterion changed %s", claim->changed);
 }
 
 /* What a verdict rests on: settings, scenes and printed tables, each named once. */

@@ -36,6 +36,7 @@ struct claim {
     const char *id, *paper, *section, *claim;
     const char *criterion; /* the comparisons in words, or why nothing can be decided */
     const char *comparison, *arguments;
+    const char *changed; /* "DATE, from VERDICT: REASON" where the criterion changed with the result known; else "" */
     int line;
     bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (sources.h) */
     bool phases;    /* it needs the phase study */

@@ -336,8 +336,11 @@ enum status verdicts_write(const char *path, const char *head, const struct verd
     fputs("\n| claim | statement | as printed | corrected |\n|---|---|---|---|\n", file.stream);
     for (int k = 0; k < claims->count; k++)
         if (verdicts->evaluated[k])
-            fprintf(file.stream, "| `%s` | %s | %s%s | %s |\n", claims->claims[k].id, claims->claims[k].claim,
+            fprintf(file.stream, "| `%s` | %s | %s%s%s%.*s%s | %s |\n", claims->claims[k].id, claims->claims[k].claim,
                     claim_verdict_names[verdicts->of[k][0]], verdicts->noisy[k] ? " (within the noise)" : "",
+                    *claims->claims[k].changed ? " (criterion changed " : "",
+                    (int)strcspn(claims->claims[k].changed, ":"), claims->claims[k].changed,
+                    *claims->claims[k].changed ? ")" : "",
                     claims->claims[k].by_scheme ? claim_verdict_names[verdicts->of[k][SCHEME_CORRECTED]] : "");
     return text_file_close(&file, STATUS_OK);
 }

@@ -129,8 +129,8 @@ enum status planted_claim(const char *comparison, const char *arguments, struct 
 {
     char text[2000];
     snprintf(text, sizeof text,
-             "id,paper,section,claim,criterion,comparison,arguments\n"
-             "x-1,BP22,4.1,a sentence,a criterion,\"%s\",\"%s\"\n",
+             "id,paper,section,claim,criterion,comparison,arguments,changed\n"
+             "x-1,BP22,4.1,a sentence,a criterion,\"%s\",\"%s\",\n",
              comparison, arguments);
     support_write("bad.csv", text);
     return claims_read(path_of("bad.csv"), claims);

@@ -227,14 +227,14 @@ static void bad_files_are_refused(void **state)
         const char *text, *says[3];
     } cases[] = {
         {"id,paper,section,claim,comparison,arguments\n", {"bad.csv", "column 5 must be 'criterion'"}},
-        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,4.1,c,c,undecided\n",
+        {"id,paper,section,claim,criterion,comparison,arguments,changed\nx,BP22,4.1,c,c,undecided\n",
          {"bad.csv:2", "6 fields"}},
-        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,,c,c,undecided,x = 1\n",
+        {"id,paper,section,claim,criterion,comparison,arguments,changed\nx,BP22,,c,c,undecided,x = 1,\n",
          {"line 2", "column section is empty"}},
-        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,4.1,c,c,,x = 1\n",
+        {"id,paper,section,claim,criterion,comparison,arguments,changed\nx,BP22,4.1,c,c,,x = 1,\n",
          {"column comparison is empty"}},
-        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,4.1,c,c,undecided,x = 1\n"
-         "x,BP22,4.1,c,c,undecided,x = 1\n",
+        {"id,paper,section,claim,criterion,comparison,arguments,changed\nx,BP22,4.1,c,c,undecided,x = 1,\n"
+         "x,BP22,4.1,c,c,undecided,x = 1,\n",
          {"line 3", "column id is 'x', as in line 2", "an id of its own"}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -374,7 +374,7 @@ static void verdicts_are_counted(void **state)
         by_scheme += claims.claims[k].by_scheme;
     }
     assert_int_equal(verdicts_write(path_of("verdicts.md"), "today", &verdicts), STATUS_OK);
-    char wanted[4][200];
+    char wanted[5][200];
     snprintf(wanted[0], sizeof wanted[0],
              "\n| all, as printed | %d | %d | 0 | 0 | 0 | 3 |\n| BP22 | 41 | 38 | 0 | 0 | 0 | 3 |\n", claims.count,
              claims.count - 3);
@@ -382,12 +382,13 @@ static void verdicts_are_counted(void **state)
     snprintf(wanted[2], sizeof wanted[2], "\n1 of those that cannot be decided are times");
     snprintf(wanted[3], sizeof wanted[3], "\n| `%s` | %s | cannot be decided (within the noise) |  |\n",
              claims.claims[1].id, claims.claims[1].claim);
+    snprintf(wanted[4], sizeof wanted[4], " | holds (criterion changed 2026-11-22, from does not hold) |  |\n");
     static char text[1 << 16];
     FILE *file = fopen(path_of("verdicts.md"), "r");
     assert_non_null(file);
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
     fclose(file);
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 5; k++)
         if (!strstr(text, wanted[k]))
             fail_msg("'%s' is not in: %s", wanted[k], text);
     claims_free(&claims);

@@ -198,8 +198,8 @@ static void need_plant(const struct need *need)
         }
     struct measurement row = planted_row(need->scene, &spec);
     row.stages = "compress=1;bulk=1;differential=1;reconstruct=1;focus=1";
-    row.run_s = row.run_min_s = row.control_s = row.flops = row.flops_published = row.bytes = row.error =
-        row.phase_rms_rad = row.width_m = 10;
+    row.run_s = row.run_min_s = row.control_s = row.flops = row.flops_published = row.bytes = row.entropy =
+        row.peak_over_median = row.error = row.phase_rms_rad = row.width_m = 10;
     row.pslr_db = row.islr_db = -10;
     assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
     spec_free(&spec);

@@ -234,6 +234,8 @@ static void numbers_draw(struct measured *measured)
         m->flops = exp(drawn(-1, 1));
         m->bytes = exp(drawn(-1, 1));
         m->width_m = 0.04 * exp(drawn(-1, 1));
+        m->entropy = drawn(4, 5);
+        m->peak_over_median = exp(drawn(5, 9));
         m->pslr_db = -14 + methods * drawn(-1, 1);
         m->islr_db = -10 + methods * drawn(-1, 1);
         const double width = drawn(-1, 1), shift = drawn(-1, 1);
