@@ -227,7 +227,10 @@ static enum status selection_reproduce(const struct selection *selection, const 
         status = batch_deal(&batch);
     if (status == STATUS_OK)
         status = scenes_measure(&batch, needs, count, batch_scene);
-    if (status == STATUS_OK && batch_whole(&batch))
+    bool whole = false;
+    if (status == STATUS_OK)
+        status = batch_join(&batch, &whole);
+    if (status == STATUS_OK && whole)
         status = selection_report(&batch, selection, count > 0);
     return batch_close(&batch, status);
 }

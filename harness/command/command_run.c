@@ -72,10 +72,12 @@ enum status command_run(const struct task *task)
     if (task->all)
         table_begin(stdout, false);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
-        status = batch_scene(&batch, &scenes[k], task->spec_count, task->specs);
-    const bool whole = status == STATUS_OK && batch_whole(&batch);
+        status = batch_scene(&batch, batch_nth(&batch, scenes, k), task->spec_count, task->specs);
+    bool whole = false;
+    if (status == STATUS_OK)
+        status = batch_join(&batch, &whole);
     const double begin = seconds_now();
-    if (whole)
+    if (whole && status == STATUS_OK)
         status = plot_results(batch.directory, NULL, &batch.undrawn);
     batch.drawn_s += seconds_now() - begin;
     if (whole && status == STATUS_OK)

@@ -6,6 +6,7 @@
 #include "run/batch.h"
 #include "advise/machine_rates.h"
 #include "advise/predicted.h"
+#include "ranks/ranks.h"
 #include "show/plot.h"
 #include "show/table.h"
 #include "sweep/sweep_settings.h"
@@ -107,12 +108,18 @@ enum status command_sweep(const struct task *task)
         status = batch_deal(&batch);
     if (task->all)
         table_begin(stdout, false);
+    const bool alone = shard.count == 0 && ranks_count() == 1;
     for (int k = 0; k < scene_count && status == STATUS_OK; k++) {
-        status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
-        if (status == STATUS_OK && shard.count == 0)
+        status = batch_scene(&batch, batch_nth(&batch, scenes, k), settings.count, settings.specs);
+        if (status == STATUS_OK && alone)
             status = scene_finish(&batch, scenes, scene_count, k);
     }
-    if (status == STATUS_OK && batch_whole(&batch))
+    bool whole = false;
+    if (status == STATUS_OK)
+        status = batch_join(&batch, &whole);
+    for (int k = 0; k < scene_count && status == STATUS_OK && whole && !alone; k++)
+        status = scene_finish(&batch, scenes, scene_count, k);
+    if (status == STATUS_OK && whole)
         status = sweep_finish(&batch, scenes, scene_count);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);

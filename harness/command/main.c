@@ -15,6 +15,7 @@
 #include "text/number.h"
 #include "text/shown_text.h"
 #include "text/suggestion.h"
+#include "ranks/ranks.h"
 #include "run/supervisor.h"
 #include "text/text_append.h"
 #include "results/provenance.h"
@@ -369,6 +370,17 @@ static void version(void)
            provenance.commit, provenance.compiler, provenance.flags, provenance.libraries, provenance.isa);
 }
 
+/* Join the ranks of mpirun, where they share this command's work. */
+static enum status ranks_share(const struct command *command, const struct task *task)
+{
+    if (command->run != command_run && command->run != command_sweep && !task->tile)
+        return status_set(STATUS_INVALID,
+                          "%s: one of %d ranks, which do not share its work; accepted: run, sweep, image --tile, or "
+                          "--shard",
+                          command->name, ranks_started());
+    return ranks_begin();
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc < 2 ? "" : argv[1];
@@ -395,17 +407,23 @@ int main(int argc, char **argv)
     else if (status == STATUS_OK && helped)
         help();
     else if (status == STATUS_OK) {
-        if (command->supervised)
+        if (ranks_started() > 1 && !task.shard)
+            status = ranks_share(command, &task);
+        if (status == STATUS_OK && (command->supervised || ranks_count() > 1))
             supervisor_begin();
-        status = command->run(&task);
+        if (status == STATUS_OK)
+            status = command->run(&task);
     }
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout)))
         status = status_set(STATUS_FAILED, "standard output cannot be written");
     for (int k = 0; k < task.spec_count; k++)
         spec_free(&task.specs[k]);
     free(task.specs);
-    if (status == STATUS_OK)
-        return 0;
-    shown_note(status_message());
-    return status == STATUS_FAILED ? 1 : 2;
+    if (status != STATUS_OK && (task.shard || ranks_count() > 1 || ranks_first()))
+        shown_note(status_message());
+    const int code = status == STATUS_OK ? 0 : status == STATUS_FAILED ? 1 : 2;
+    if (ranks_count() == 1)
+        return code;
+    fflush(NULL);
+    _exit(code); /* MPI is the parent's to end */
 }

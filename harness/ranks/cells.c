@@ -162,16 +162,24 @@ enum status cells_deal(struct cells *cells, const struct shard *shard)
     return shard->count > 0 ? shards_deal(cells, shard) : STATUS_OK;
 }
 
-const char *cells_scene(const struct cells *cells, int k)
+int cells_scene(const struct cells *cells, int k)
 {
     int last = -1;
     for (int n = 0; n < cells->count; n++)
         if (cells->list[n].scene != last) {
             last = cells->list[n].scene;
             if (k-- == 0)
-                return cells->scenes[last].name;
+                break;
         }
-    return NULL;
+    return last;
+}
+
+bool cells_is(const struct cells *cells, int n, const char *scene, const struct spec *spec)
+{
+    char *name = n < cells->count ? cell_name(scene, spec) : NULL;
+    const bool same = name && strcmp(cells->list[n].name, name) == 0;
+    free(name);
+    return same;
 }
 
 int cells_find(const struct cells *cells, const char *scene, const struct spec *spec)

@@ -36,8 +36,10 @@ void cells_free(struct cells *cells);
 /* Order them, and mark those of a shard; all where it is none. Each cell is of one shard, whatever the order in which
    they were added. Errors: STATUS_FAILED without memory. */
 enum status cells_deal(struct cells *cells, const struct shard *shard);
-/* Of all scenes in the order of their cells: the k-th by its name. */
-const char *cells_scene(const struct cells *cells, int k);
+/* Of all scenes in the order of their cells the k-th, as it was added. */
+int cells_scene(const struct cells *cells, int k);
+/* Is this the cell of a place in their order? */
+bool cells_is(const struct cells *cells, int n, const char *scene, const struct spec *spec);
 /* The place of a cell in their order; -1: none. */
 int cells_find(const struct cells *cells, const char *scene, const struct spec *spec);
 

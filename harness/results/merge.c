@@ -78,10 +78,17 @@ static void merger_free(struct merger *merger)
 
 /* ---- what the files are from ---- */
 
-/* The length of "key" in "key: value"; the name of a scene may hold anything. */
+/* "scene NAME: HASH", "algorithm NAME: ORIGIN": of some rows. */
+static bool names_content(const char *comment)
+{
+    return strncmp(comment, "scene ", strlen("scene ")) == 0
+           || strncmp(comment, "algorithm ", strlen("algorithm ")) == 0;
+}
+
+/* The length of "key" in "key: value"; a name may hold anything. */
 static size_t key_length(const char *comment)
 {
-    const char *end = strncmp(comment, "scene ", 6) == 0 ? strrchr(comment, ':') : strchr(comment, ':');
+    const char *end = names_content(comment) ? strrchr(comment, ':') : strchr(comment, ':');
     return end ? (size_t)(end - comment) : strlen(comment);
 }
 
@@ -108,8 +115,7 @@ static enum status comments_check(const struct csv *csv, const struct csv *first
 {
     for (int k = 0; k < first->comment_count; k++) {
         const char *wanted = first->comments[k], *found = comment_like(csv, wanted);
-        const bool optional = strncmp(wanted, "scene ", 6) == 0;
-        if (comment_is_free(wanted) || (found ? strcmp(found, wanted) == 0 : optional))
+        if (comment_is_free(wanted) || (found ? strcmp(found, wanted) == 0 : names_content(wanted)))
             continue;
         return status_set(STATUS_INVALID,
                           "%s: has '# %.200s', must be '# %.200s' as in %s; other results are not merged", csv->path,

@@ -5,13 +5,17 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "advise/check.h"
 #include "echoes/echo_data.h"
+#include "ranks/rank_folders.h"
+#include "ranks/ranks.h"
 #include "run/progress_line.h"
 #include "run/supervisor.h"
 #include "run/visit.h"
 #include "show/table.h"
+#include "text/shown_text.h"
 
 /* A scene whose echoes cannot be made gets a failed row for every missing algorithm, and the next scene follows. */
 static enum status fail_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
@@ -28,7 +32,6 @@ static enum status fail_scene(struct batch *batch, const struct scene *scene, in
         if (status == STATUS_OK)
             table_row(stdout, earlier ? earlier : &row);
     }
-    table_scene_end(stdout);
     fflush(stdout);
     return status;
 }
@@ -95,114 +98,270 @@ static void heading_print(const struct scene *scene)
     check_warnings(stdout, scene, false);
 }
 
-static enum status part_measure(struct batch *batch, const struct scene *scene, int spec_count,
-                                const struct spec *specs)
-{
+/* A scene while its parts are measured. */
+struct stay {
     struct visit visit;
-    int missing = 0;
-    enum status status = results_folder_scene(batch->results, scene->name, scene->hash);
+    bool begun, visited, refused; /* `refused`: its echoes cannot be made */
+};
+
+/* Is there anything to do but print? */
+static bool part_is_left(const struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
+{
+    for (int k = 0; k < spec_count; k++)
+        if (!batch_find(batch, scene, &specs[k]))
+            return true;
+    return visit_pictures_missing(batch, scene, spec_count, specs);
+}
+
+/* Declare scene and algorithms, and open the visit where it is needed. */
+static enum status part_begin(struct batch *batch, struct stay *stay, const struct scene *scene, int spec_count,
+                              const struct spec *specs)
+{
+    enum status status = stay->begun ? STATUS_OK : results_folder_scene(batch->results, scene->name, scene->hash);
     for (int k = 0; k < spec_count && status == STATUS_OK; k++)
         if (specs[k].algorithm->origin)
             status = results_folder_algorithm(batch->results, specs[k].algorithm->name, specs[k].algorithm->origin);
-    for (int k = 0; k < spec_count; k++)
-        missing += !batch_find(batch, scene, &specs[k]);
-    const bool visited = missing > 0 || visit_pictures_missing(batch, scene, spec_count, specs);
-    if (status == STATUS_OK)
-        heading_print(scene);
-    if (status == STATUS_OK && visited) {
-        batch_progress(batch, scene->name, "echoes and exact image");
-        if (visit_open(batch, scene, spec_count, specs, &visit) != STATUS_OK) {
-            progress_line_clear();
-            return fail_scene(batch, scene, spec_count, specs);
-        }
-    }
     if (status != STATUS_OK)
         return status;
+    if (!stay->begun)
+        heading_print(scene);
+    stay->begun = true;
+    if (!stay->visited && !stay->refused && part_is_left(batch, scene, spec_count, specs)) {
+        batch_progress(batch, scene->name, "echoes and exact image");
+        stay->visited = visit_open(batch, scene, spec_count, specs, &stay->visit) == STATUS_OK;
+        stay->refused = !stay->visited;
+        progress_line_clear();
+    }
+    stay->visit.specs = specs;
+    stay->visit.spec_count = spec_count;
+    return STATUS_OK;
+}
+
+static enum status part_measure(struct batch *batch, struct stay *stay, const struct scene *scene, int spec_count,
+                                const struct spec *specs)
+{
+    struct visit *visit = &stay->visit;
+    enum status status = part_begin(batch, stay, scene, spec_count, specs);
+    if (status == STATUS_OK && stay->refused)
+        return fail_scene(batch, scene, spec_count, specs);
     for (int k = 0; k < spec_count && status == STATUS_OK; k++, batch->done++) {
         const struct measurement *row = batch_find(batch, scene, &specs[k]);
-        if (visited && visit.samples && k % TURNS == 0)
-            visit_turns(batch, &visit, k);
+        if (stay->visited && visit->samples && k % TURNS == 0)
+            visit_turns(batch, visit, k);
         batch_progress(batch, scene->name, specs[k].algorithm->name);
         batch->measured += !row;
         if (!row)
-            status = visit_measure(batch, &visit, k);
-        else if (visited && batch->details)
-            visit_redraw(&visit, k, row);
+            status = visit_measure(batch, visit, k);
+        else if (stay->visited && batch->details)
+            visit_redraw(visit, k, row);
         progress_line_clear();
         if (row && status == STATUS_OK)
             table_row(stdout, row);
         fflush(stdout);
     }
-    table_scene_end(stdout);
-    if (visited) {
-        const double begin = seconds_now();
-        if (status == STATUS_OK && batch->details)
-            pictures_draw(&visit.pictures);
-        batch->drawn_s += seconds_now() - begin;
-        batch->undrawn += visit.pictures.undrawn;
-        session_spent(&visit.session, &batch->spent);
-        visit_close(&visit);
-    }
-    if (status == STATUS_OK && batch->works)
-        works_print(scene, spec_count, specs);
     return status;
+}
+
+static void stay_end(struct batch *batch, struct stay *stay, bool drawn)
+{
+    const double begin = seconds_now();
+    table_scene_end(stdout);
+    if (!stay->visited)
+        return;
+    if (drawn && batch->details)
+        pictures_draw(&stay->visit.pictures);
+    batch->drawn_s += seconds_now() - begin;
+    batch->undrawn += stay->visit.pictures.undrawn;
+    session_spent(&stay->visit.session, &batch->spent);
+    visit_close(&stay->visit);
+}
+
+/* ---- parts of a run ---- */
+
+static bool is_shared(const struct batch *batch)
+{
+    return batch->shard.count > 0 || ranks_count() > 1;
 }
 
 enum status batch_cells(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
-    return batch->shard.count > 0 ? cells_add(&batch->cells, scene, spec_count, specs) : STATUS_OK;
+    const int first = batch->cells.count;
+    enum status status = is_shared(batch) ? cells_add(&batch->cells, scene, spec_count, specs) : STATUS_OK;
+    if (status == STATUS_OK && ranks_count() > 1 && ranks_number() == 0) {
+        status = results_folder_scene(batch->results, scene->name, scene->hash);
+        for (int k = 0; k < spec_count; k++)
+            batch->cells.list[first + k].mine = !batch_find(batch, scene, &specs[k]);
+    }
+    return status;
+}
+
+/* Rank 0: what is to be done. */
+static enum status cells_offer(const struct cells *cells)
+{
+    int count = 0, *tasks = calloc((size_t)cells->count + 1, sizeof *tasks);
+    if (!tasks)
+        return status_set(STATUS_FAILED, "no memory for %d cells", cells->count);
+    for (int n = 0; n < cells->count; n++)
+        if (cells->list[n].mine)
+            tasks[count++] = n;
+    ranks_offer(count, tasks);
+    free(tasks);
+    return STATUS_OK;
 }
 
 enum status batch_deal(struct batch *batch)
 {
     enum status status = cells_deal(&batch->cells, &batch->shard);
-    if (batch->shard.count == 0 || status != STATUS_OK)
+    if (!is_shared(batch) || status != STATUS_OK)
         return status;
     batch->details = batch->works = false;
+    if (ranks_count() > 1)
+        return ranks_number() == 0 ? cells_offer(&batch->cells) : STATUS_OK;
     batch->rows = 0;
     for (int n = 0; n < batch->cells.count; n++)
         batch->rows += batch->cells.list[n].mine;
     return STATUS_OK;
 }
 
-bool batch_whole(const struct batch *batch)
+const struct scene *batch_nth(const struct batch *batch, const struct scene *scenes, int k)
 {
-    if (batch->shard.count > 0)
-        printf("\nShard %d/%d: %d of %d cells are in %s. When all are done: ./sasbench merge FOLDER ... -o DIR\n",
-               batch->shard.number, batch->shard.count, batch->rows, batch->cells.count, batch->directory);
-    return batch->shard.count == 0;
+    return ranks_count() > 1 ? &scenes[cells_scene(&batch->cells, k)] : &scenes[k];
 }
 
-enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
+/* The next cells of a scene that rank 0 hands to this rank; several where settings are timed in turn, fewer towards
+   the end. */
+static int part_next(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs,
+                     struct spec *part)
 {
-    if (batch->shard.count == 0)
-        return part_measure(batch, scene, spec_count, specs);
-    struct spec *part = malloc((size_t)spec_count * sizeof *part + 1);
+    struct cells *cells = &batch->cells;
+    int count = 0, most = 1;
+    while (count < most) {
+        if (cells->next < 0)
+            cells->next = ranks_next();
+        if (cells->next < 0)
+            cells->next = cells->count;
+        int k = 0;
+        while (k < spec_count && !cells_is(cells, cells->next, scene->name, &specs[k]))
+            k++;
+        if (k == spec_count)
+            break;
+        if (count == 0) {
+            const int fair = (cells->count - cells->next) / (2 * ranks_count());
+            most = !batch->in_turn || fair < 1 ? 1 : fair < TURNS ? fair : TURNS;
+            batch->measured += cells->next - batch->done;
+            batch->done = cells->next;
+        }
+        part[count++] = specs[k];
+        cells->next = -1;
+    }
+    return count;
+}
+
+static int part_of_shard(const struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs,
+                         struct spec *part)
+{
     int count = 0;
-    if (!part)
-        return status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
     for (int k = 0; k < spec_count; k++) {
         const int n = cells_find(&batch->cells, scene->name, &specs[k]);
         if (n >= 0 && batch->cells.list[n].mine)
             part[count++] = specs[k];
     }
-    const enum status status = count > 0 ? part_measure(batch, scene, count, part) : STATUS_OK;
+    return count;
+}
+
+/* By one part of the scene's SPECs after the other. */
+static enum status scene_parts(struct batch *batch, struct stay *stay, const struct scene *scene, int spec_count,
+                               const struct spec *specs)
+{
+    struct spec *part = malloc((size_t)spec_count * sizeof *part + 1);
+    enum status status = STATUS_OK;
+    int count = 1;
+    if (!part)
+        return status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
+    if (batch->shard.count > 0) {
+        count = part_of_shard(batch, scene, spec_count, specs, part);
+        status = count > 0 ? part_measure(batch, stay, scene, count, part) : STATUS_OK;
+        count = 0;
+    }
+    while (count > 0 && status == STATUS_OK) {
+        count = part_next(batch, scene, spec_count, specs, part);
+        if (count > 0)
+            status = part_measure(batch, stay, scene, count, part);
+    }
     free(part);
     return status;
 }
 
+enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
+{
+    struct stay stay = {.begun = false};
+    enum status status = is_shared(batch) ? scene_parts(batch, &stay, scene, spec_count, specs)
+                                          : part_measure(batch, &stay, scene, spec_count, specs);
+    if (stay.begun)
+        stay_end(batch, &stay, status == STATUS_OK);
+    if (status == STATUS_OK && batch->works)
+        works_print(scene, spec_count, specs);
+    return status;
+}
+
+/* Rows of other ranks may have failed. */
+static enum status failed_find(struct batch *batch)
+{
+    char path[4400];
+    struct results results;
+    snprintf(path, sizeof path, "%s/measurements.csv", batch->directory);
+    const enum status status = results_read(path, &results);
+    for (int k = 0; k < results.csv.row_count; k++)
+        batch->failed |= strcmp(results.measurements[k].status, "failed") == 0;
+    results_free(&results);
+    return status;
+}
+
+enum status batch_join(struct batch *batch, bool *whole)
+{
+    *whole = !is_shared(batch);
+    if (batch->shard.count > 0)
+        printf("\nShard %d/%d: %d of %d cells are in %s. When all are done: ./sasbench merge FOLDER ... -o DIR\n",
+               batch->shard.number, batch->shard.count, batch->rows, batch->cells.count, batch->directory);
+    if (ranks_count() == 1 || ranks_number() > 0)
+        return STATUS_OK;
+    ranks_join();
+    *whole = true;
+    enum status status = results_folder_close(batch->results);
+    batch->results = NULL;
+    if (status == STATUS_OK)
+        status = rank_folders_join(batch->directory);
+    if (status == STATUS_OK)
+        status = results_folder_open(batch->directory, &batch->provenance, &batch->results);
+    return status == STATUS_OK ? failed_find(batch) : status;
+}
+
+/* Rank 0, or the only process, takes up what ranks that were ended have left. */
+static enum status folder_open(const char *directory, struct batch *batch)
+{
+    if (ranks_number() == 0 && !ranks_again() && rank_folders_join(directory) != STATUS_OK)
+        shown_note(status_message());
+    if (ranks_number() > 0) {
+        ranks_meet();
+        rank_folder(directory, ranks_number(), batch->own, sizeof batch->own);
+        batch->directory = batch->own;
+        if (!freopen("/dev/null", "w", stdout)) /* rank 0 prints */
+            return status_set(STATUS_FAILED, "rank %d: /dev/null cannot be opened", ranks_number());
+    }
+    return results_folder_open(batch->directory, &batch->provenance, &batch->results);
+}
+
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch)
 {
-    struct provenance provenance;
     *batch = (struct batch){.directory = directory,
                             .threads = omp_get_max_threads(),
                             .details = details,
                             .effort = EFFORT_WHOLE,
                             .rows = rows};
-    provenance_fill(&provenance, batch->threads);
+    provenance_fill(&batch->provenance, batch->threads);
     provenance_line(batch->footer);
     batch->begin = seconds_now();
-    enum status status = results_folder_open(directory, &provenance, &batch->results);
+    enum status status = folder_open(directory, batch);
     if (status == STATUS_OK) {
         supervisor_keeps(directory);
         table_begin(stdout, rows > ROWS_MANY);
@@ -221,7 +380,7 @@ enum status batch_close(struct batch *batch, enum status status)
     enum status closed = results_folder_close(batch->results);
     status = status == STATUS_OK ? closed : status;
     batch->results = NULL;
-    if (status == STATUS_OK && batch->failed)
+    if (status == STATUS_OK && batch->failed && ranks_number() == 0)
         status = status_set(STATUS_FAILED,
                             "at least one algorithm failed; the table and %s/measurements.csv give the reason",
                             batch->directory);

@@ -10,7 +10,9 @@
 #include "measure/timing.h"
 
 struct batch {
-    const char *directory;        /* borrowed */
+    const char *directory; /* borrowed, or `own` */
+    char own[4200];        /* of a rank other than 0 */
+    struct provenance provenance;
     char footer[PROVENANCE_LINE]; /* below its pictures */
     struct results_folder *results;
     int threads;
@@ -35,12 +37,16 @@ enum { ROWS_MANY = 100 }; /* `run` times more rows than these briefly, and shows
    rows: the number of measurements to come. Errors: as results_folder_open; *batch is then safe to close. */
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch);
 
-/* Before the first scene: take a part of the cells alone, those of `shard`; all where it is none. A part is not drawn.
-   batch_cells, of the scenes one by one; then batch_deal. Errors: STATUS_FAILED without memory. */
+/* Before the first scene: take a part of the cells alone, those of `shard`, or those that rank 0 hands out; all where
+   there is neither. A part is not drawn. batch_cells, of the scenes one by one; then batch_deal. Errors: STATUS_FAILED
+   without memory, and as results_folder_scene. */
 enum status batch_cells(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs);
 enum status batch_deal(struct batch *batch);
-/* Are all cells of the run in the folder, so that tables and pictures of them can be made? If not, that is printed. */
-bool batch_whole(const struct batch *batch);
+/* The scene to begin as the k-th. */
+const struct scene *batch_nth(const struct batch *batch, const struct scene *scenes, int k);
+/* After the last scene; rank 0 waits for the others and takes up their rows. *whole: all cells of the run are in the
+   folder, and this process makes tables and pictures of them. Errors: as results_merge, results_folder_open. */
+enum status batch_join(struct batch *batch, bool *whole);
 
 /* Measure one scene with every spec: echoes and exact image once, then for each spec a row in the CSVs and on the
    terminal as soon as it is done. Existing rows are only printed; if an interrupted run left a picture of the scene

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "ranks/ranks.h"
 #include "text/shown_text.h"
 
 enum { CRASHES_MAX = 256, TASK_MAX = 800 };
@@ -94,7 +95,7 @@ static void crash_note(int state)
 static void wait_for_child(void)
 {
     int state;
-    while (waitpid((pid_t)child, &state, 0) < 0)
+    while (ranks_wait((pid_t)child, &state) < 0)
         if (errno != EINTR)
             _exit(1);
     child = 0;
@@ -104,7 +105,8 @@ static void wait_for_child(void)
     }
     if (WIFSIGNALED(state)) {
         sigset_t all;
-        if (*notes->folder && (WTERMSIG(state) == SIGINT || WTERMSIG(state) == SIGTERM)) {
+        const bool interrupted = WTERMSIG(state) == SIGINT || WTERMSIG(state) == SIGTERM;
+        if (*notes->folder && interrupted && ranks_number() <= 1) { /* rank 0 may be what died */
             fputs("sasbench: interrupted; ", stderr);
             shown_write(stderr, notes->folder);
             fputs(" holds what was measured, the same command goes on from there\n", stderr);
@@ -114,7 +116,9 @@ static void wait_for_child(void)
         raise(WTERMSIG(state));
         sigprocmask(SIG_UNBLOCK, &all, NULL);
     }
-    _exit(WIFEXITED(state) ? WEXITSTATUS(state) : 1);
+    const int status = WIFEXITED(state) ? WEXITSTATUS(state) : 1;
+    ranks_end(status);
+    _exit(status);
 }
 
 void supervisor_begin(void)
@@ -137,7 +141,7 @@ void supervisor_begin(void)
             sigaction(forwarded[k], &action, NULL);
     }
     for (;;) {
-        pid_t process = fork();
+        pid_t process = ranks_prepare() ? fork() : -1;
         if (process <= 0) { /* the child; or no other process can do the work */
             for (size_t k = 0; k < sizeof forwarded / sizeof *forwarded; k++)
                 sigaction(forwarded[k], &before[k], NULL);

@@ -5,7 +5,7 @@
 /* Continue in a child process, before any thread is started. The parent waits. When a signal (also the system's for
    want of memory) or an exit ends the child within a task, the parent starts another child, which begins again from
    here and finds that task among the crashed ones. Otherwise the parent ends as the child did. Where no process can
-   be started, the work is done unsupervised. */
+   be started, the work is done unsupervised. The parents of several ranks hand out tasks meanwhile (ranks/ranks.h). */
 void supervisor_begin(void);
 
 /* The task from now on, one at a time, by a text that identifies it; and its end. */
