@@ -188,8 +188,8 @@ static void need_accepted(const struct need *need)
     scene_free(&scene);
 }
 
-/* What tables and claims measure is imaged: no algorithm refuses its scene, nor PCA, whose error is the largest, with the widest
-   beam. */
+/* What tables and claims measure is imaged: no algorithm refuses its scene, nor PCA, whose error is the largest, with
+   the widest beam. */
 static void needs_are_accepted(void **state)
 {
     (void)state;

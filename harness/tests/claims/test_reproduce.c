@@ -264,8 +264,8 @@ static void times_are_scaled(void **state)
         const char *stages;
         enum claim_verdict verdict;
     } cases[] = {
-        {5.25, "compress=0.25;focus=5", CLAIM_HOLDS},
-        {4.55, "compress=0.25;focus=4.3", CLAIM_UNDECIDED}, /* 4.28 times, which noise may be */
+        {5.25, "compress=0.25;focus=5", CLAIM_ASSUMED},     /* the planted work does not count so */
+        {3.75, "compress=0.25;focus=3.5", CLAIM_UNDECIDED}, /* 3.5 times, which noise may be */
         {3.25, "compress=0.25;focus=3", CLAIM_FAILS},
     };
     static const char *const lines[] = {NEAREST, LINEAR_2, LINEAR_8};
