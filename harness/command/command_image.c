@@ -187,6 +187,8 @@ static enum status check_usage(const struct task *task)
     if (task->tile && (output_is_picture(task->output) || task->verify))
         return status_set(STATUS_INVALID, "image: --tile %s fills a file of numbers: -o FILE.mat, without --verify",
                           task->tile);
+    if (task->shard && !task->tile)
+        return status_set(STATUS_INVALID, "image: --shard %s shares tiles; --tile NxM is needed", task->shard);
     return output_is_picture(task->output) ? picture_check("image", task->output) : output_check("image", task->output);
 }
 

@@ -63,8 +63,8 @@ static const struct command commands[] = {
      false},
     {"image", "form one image",
      "(--scene SCENE | --echoes FILE.mat [--grid GRID]) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
-     "[--verify] [--tile NxM]",
-     "form one image, as numbers or as a picture; with --tile it continues where it was ended", "oseagtRWI", 0, 0,
+     "[--verify] [--tile NxM [--shard I/N]]",
+     "form one image, as numbers or as a picture; with --tile it continues where it was ended", "oseagtRWIX", 0, 0,
      command_image, false},
     {"show", "draw an image file", "FILE.mat [-o FILE.png] [--range DB]",
      "draw an image file; the picture is beside it, or at -o", "oR", 1, 1, command_show, false},

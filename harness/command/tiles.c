@@ -12,6 +12,8 @@
 #include "echoes/echo_data.h"
 #include "echoes/mat_tiles.h"
 #include "imaging/imaging.h"
+#include "ranks/cells.h"
+#include "ranks/ranks.h"
 #include "run/progress_line.h"
 #include "scene/simulate.h"
 #include "show/table.h"
@@ -137,7 +139,55 @@ static void settings_format(const struct task *task, const struct scene *scene, 
              g->r_first, g->r_step, g->r_count, g->angle_rad, scene->hash, origin->commit);
 }
 
-static enum status tiles_form(const struct task *task, const struct scene *scene, struct tiles *tiles)
+/* The first, or the next, tile for this process after tile `n`; -1: none is left. */
+static int tile_next(const struct tiles *tiles, const struct shard *shard, int n)
+{
+    if (ranks_count() > 1)
+        return ranks_next();
+    do
+        n++;
+    while (n < tiles_count(tiles) && (tiles->done[n] || (shard->count > 0 && n % shard->count != shard->number - 1)));
+    return n < tiles_count(tiles) ? n : -1;
+}
+
+/* Open the file; rank 0 makes it, and hands out what is to be done. */
+static enum status file_open(struct tiles *tiles, const struct shard *shard, const char *settings,
+                             const struct image_origin *origin)
+{
+    tiles->writer = ranks_count() > 1 ? ranks_number() + 1 : shard->number;
+    tiles->anew = ranks_count() > 1;
+    ranks_meet();
+    enum status status = tiles_open(tiles, settings, origin);
+    if (status != STATUS_OK || ranks_count() == 1 || ranks_number() > 0)
+        return status;
+    int count = 0, *todo = calloc((size_t)tiles_count(tiles), sizeof *todo);
+    for (int n = 0; n < tiles_count(tiles) && todo; n++)
+        if (!tiles->done[n])
+            todo[count++] = n;
+    if (todo)
+        ranks_offer(count, todo);
+    else
+        status = status_set(STATUS_FAILED, "%s: out of memory for its tiles", tiles->path);
+    free(todo);
+    return status;
+}
+
+/* The last one finishes the file. */
+static enum status file_finish(struct tiles *tiles, bool *sealed)
+{
+    *sealed = false;
+    if (ranks_number() > 0)
+        return STATUS_OK;
+    ranks_join();
+    const enum status status = tiles_seal(tiles, sealed);
+    int done, count;
+    if (status == STATUS_OK && !*sealed && tiles_claimed(tiles->path, &done, &count))
+        printf("%s: this part is done, %d of all %d tiles\n", tiles->path, done, count);
+    return status;
+}
+
+static enum status tiles_form(const struct task *task, const struct shard *shard, const struct scene *scene,
+                              struct tiles *tiles)
 {
     const struct spec *spec = &task->specs[0];
     const int count = tiles_count(tiles), before = tiles_done(tiles);
@@ -147,16 +197,15 @@ static enum status tiles_form(const struct task *task, const struct scene *scene
     if (status == STATUS_OK && in_memory)
         status = echoes_convert(&from, spec->precision, &echoes);
     echoes_free(&from);
-    if (before > 0)
+    if (before > 0 && ranks_number() == 0)
         printf("%s: %d of %d tiles were done\n", tiles->path, before, count);
-    for (int n = 0; n < count && status == STATUS_OK; n++)
-        if (!tiles->done[n]) {
-            progress_line(false, "%s: tile %d of %d by %s", scene->name, n + 1, count, spec->algorithm->name);
-            status = tile_form(spec, scene, &echoes, tiles, n);
-        }
+    for (int n = -1; status == STATUS_OK && (n = tile_next(tiles, shard, n)) >= 0;) {
+        progress_line(false, "%s: tile %d of %d by %s", scene->name, n + 1, count, spec->algorithm->name);
+        status = tile_form(spec, scene, &echoes, tiles, n);
+    }
     progress_line_clear();
     echoes_free(&echoes);
-    return status == STATUS_OK ? tiles_seal(tiles) : status;
+    return status;
 }
 
 enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin)
@@ -171,16 +220,22 @@ enum status image_tiles(const struct task *task, const struct scene *scene, cons
                           "itself (bp_nearest, bp_linear, bp_sinc, bp_fitted, bp_farrow, bp_zeropad, reference); %s of "
                           "%d patches is asked for",
                           spec->algorithm->name, scene->patch_count);
-    enum status status = tile_parse(task->tile, &tiles);
+    struct shard shard;
+    bool sealed = false;
+    enum status status = shard_parse("image", task->shard, &shard);
+    if (status == STATUS_OK)
+        status = tile_parse(task->tile, &tiles);
     if (status != STATUS_OK)
         return status;
     settings_format(task, scene, origin, settings, sizeof settings);
-    status = tiles_open(&tiles, settings, origin);
+    status = file_open(&tiles, &shard, settings, origin);
     if (status != STATUS_OK)
         return status;
     const double begin = seconds_now();
-    status = tiles_form(task, scene, &tiles);
+    status = tiles_form(task, &shard, scene, &tiles);
     if (status == STATUS_OK)
+        status = file_finish(&tiles, &sealed);
+    if (status == STATUS_OK && sealed)
         printf("%s: %s of %s, %d tiles, %s\n", task->output, origin->algorithm, scene->name, tiles_count(&tiles),
                cell_time(seconds_now() - begin).text);
     tiles_close(&tiles);

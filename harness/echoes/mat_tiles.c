@@ -239,8 +239,7 @@ enum status tiles_write(struct tiles *tiles, int number, const void *pixels)
     const int length = snprintf(line, sizeof line, "done %d %08lx\n", number, sum_of(turned, bytes));
     free(turned);
     /* Only once the numbers are on the disk. */
-    written =
-        written && write_at(tiles->journal, line, (size_t)length, tiles->journal_end) && fdatasync(tiles->journal) == 0;
+    written = written && write_at(tiles->own, line, (size_t)length, tiles->journal_end) && fdatasync(tiles->own) == 0;
     if (!written)
         return tiles_fail(tiles, "a tile cannot be written");
     tiles->journal_end += length;
@@ -248,23 +247,22 @@ enum status tiles_write(struct tiles *tiles, int number, const void *pixels)
     return STATUS_OK;
 }
 
-/* The tiles that the journal claims, as far as the file has their numbers. */
-static enum status done_read(struct tiles *tiles, const char *line)
+/* The tiles that a journal claims, as far as the file has their numbers; of another writer's, those not done yet. */
+static void claims_verify(struct tiles *tiles, const char *line, bool other)
 {
-    const int count = tiles_count(tiles);
-    const size_t most = tile_bytes(tiles, 0); /* none is larger */
-    char *numbers = malloc(most);
-    if (!numbers)
-        return status_set(STATUS_FAILED, "%s: out of memory for a tile of %zu bytes", tiles->path, most);
-    for (const char *end; (end = strchr(line, '\n')); line = end + 1) {
-        int number, length = 0;
+    char *numbers = malloc(tile_bytes(tiles, 0)); /* none is larger */
+    for (const char *end; numbers && (end = strchr(line, '\n')); line = end + 1) {
         unsigned long sum;
-        if (sscanf(line, "done %d %8lx%n", &number, &sum, &length) == 2 && line + length == end && number >= 0
-            && number < count && tile_move(tiles, number, false, numbers))
-            tiles->done[number] = sum == sum_of(numbers, tile_bytes(tiles, number));
+        const int n = journal_claim(line, end, &sum);
+        if (n >= 0 && n < tiles_count(tiles) && !(other && tiles->done[n]) && tile_move(tiles, n, false, numbers))
+            tiles->done[n] = sum == sum_of(numbers, tile_bytes(tiles, n));
     }
     free(numbers);
-    return STATUS_OK;
+}
+
+static void other_verify(void *tiles, const char *text)
+{
+    claims_verify(tiles, text, true);
 }
 
 static void line_copy(const char *text, char *line, size_t size)
@@ -295,7 +293,11 @@ static enum status tiles_continue(struct tiles *tiles, const char *text, const c
         return settings_refuse(tiles, text, settings);
     tiles->file = open(tiles->path, O_RDWR | O_CLOEXEC);
     *begun = tiles->file >= 0 && offsets_find(tiles->path, tiles);
-    return *begun ? done_read(tiles, text + strlen(settings)) : STATUS_OK;
+    if (*begun) {
+        claims_verify(tiles, text + strlen(settings), false);
+        journals_each(tiles->path, other_verify, tiles);
+    }
+    return STATUS_OK;
 }
 
 static enum status tiles_begin(struct tiles *tiles, const char *settings, const struct image_origin *origin)
@@ -303,6 +305,7 @@ static enum status tiles_begin(struct tiles *tiles, const char *settings, const 
     if (tiles->file >= 0)
         close(tiles->file);
     tiles->file = -1;
+    journals_clear(tiles->path);
     if (ftruncate(tiles->journal, 0) != 0)
         return tiles_fail(tiles, "its journal cannot be written");
     const enum status status = file_make(tiles, origin);
@@ -316,72 +319,81 @@ static enum status tiles_begin(struct tiles *tiles, const char *settings, const 
                : tiles_fail(tiles, "its journal cannot be written");
 }
 
-/* All of a file, malloc'ed, as a text; cut behind its last whole line. */
-static char *journal_read(struct tiles *tiles)
-{
-    struct stat file;
-    if (fstat(tiles->journal, &file) != 0)
-        return NULL;
-    char *text = malloc((size_t)file.st_size + 1);
-    ssize_t length = text ? pread(tiles->journal, text, (size_t)file.st_size, 0) : -1;
-    while (length > 0 && text[length - 1] != '\n')
-        length--;
-    if (length >= 0)
-        text[length] = '\0';
-    tiles->journal_end = length;
-    return text;
-}
-
-static enum status journal_take(struct tiles *tiles)
-{
-    char name[PATH_MAX];
-    if (snprintf(name, sizeof name, "%s" TILES_JOURNAL, tiles->path) >= (int)sizeof name)
-        return status_set(STATUS_INVALID, "%.100s...: path too long for a journal beside it", tiles->path);
-    tiles->journal = open(name, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (tiles->journal < 0)
-        return tiles_fail(tiles, "its journal cannot be opened");
-    return flock(tiles->journal, LOCK_EX | LOCK_NB) == 0
-               ? STATUS_OK
-               : status_set(STATUS_INVALID, "%s: another program fills this file", tiles->path);
-}
-
 bool tiles_claimed(const char *path, int *done, int *count)
 {
-    struct tiles tiles = {.path = path};
     char name[PATH_MAX];
     int rows, columns;
+    off_t end;
     snprintf(name, sizeof name, "%s" TILES_JOURNAL, path);
-    tiles.journal = open(name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-    char *text = tiles.journal >= 0 ? journal_read(&tiles) : NULL;
+    const int journal = open(name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    char *text = journal >= 0 ? journal_read(journal, &end) : NULL;
     const bool ours = text && strncmp(text, head, strlen(head)) == 0
                       && sscanf(text + strlen(head), line_of_tiles, &columns, &rows, count) == 3;
     *done = 0;
-    for (const char *line = text; ours && (line = strstr(line, "\ndone ")); line++)
-        ++*done;
+    if (ours) {
+        journal_claims(done, text);
+        journals_each(path, journal_claims, done);
+    }
     free(text);
-    if (tiles.journal >= 0)
-        close(tiles.journal);
+    if (journal >= 0)
+        close(journal);
     return ours;
 }
 
-static enum status opened(struct tiles *tiles, const char *settings, const struct image_origin *origin)
+/* `text`: of the journal. */
+static enum status text_take(struct tiles *tiles, const char *text, bool first, const char *settings,
+                             const struct image_origin *origin)
 {
     bool begun = false;
-    tiles->file = tiles->journal = -1;
-    tiles->done = calloc((size_t)tiles_count(tiles), sizeof *tiles->done);
-    enum status status = tiles->done ? journal_take(tiles) : tiles_fail(tiles, "out of memory for its tiles");
-    char *text = status == STATUS_OK ? journal_read(tiles) : NULL;
-    if (status == STATUS_OK && !text)
-        status = tiles_fail(tiles, "its journal cannot be read");
-    const bool ours = text && strncmp(text, head, strlen(head)) == 0;
-    if (status == STATUS_OK && *text && !ours)
+    enum status status = STATUS_OK;
+    const bool ours = strncmp(text, head, strlen(head)) == 0;
+    if (*text && !ours)
         status = status_set(STATUS_INVALID, "%s" TILES_JOURNAL ": is no journal of tiles; remove it to begin anew",
                             tiles->path);
     if (status == STATUS_OK && ours)
         status = tiles_continue(tiles, text + strlen(head), settings, &begun);
-    if (status == STATUS_OK && !begun)
-        status = tiles_begin(tiles, settings, origin);
+    if (status != STATUS_OK || begun)
+        return status;
+    if (!first)
+        return status_set(STATUS_INVALID, "%s: another program fills this file", tiles->path);
+    if (!*text && tiles->writer > 0 && !tiles->anew && access(tiles->path, F_OK) == 0) {
+        journal_remove(tiles->path);
+        return status_set(STATUS_INVALID,
+                          "%s: is there without a journal, finished or another's; remove it to begin anew",
+                          tiles->path);
+    }
+    return tiles_begin(tiles, settings, origin);
+}
+
+static enum status own_take(struct tiles *tiles)
+{
+    tiles->own = tiles->journal;
+    if (tiles->writer == 0)
+        return STATUS_OK;
+    const enum status status = journal_own(tiles->path, tiles->writer, &tiles->own);
+    char *text = status == STATUS_OK ? journal_read(tiles->own, &tiles->journal_end) : NULL;
+    if (status == STATUS_OK && !text)
+        return tiles_fail(tiles, "its journal cannot be read");
     free(text);
+    return status;
+}
+
+static enum status opened(struct tiles *tiles, const char *settings, const struct image_origin *origin)
+{
+    bool first;
+    tiles->file = tiles->journal = tiles->own = -1;
+    tiles->done = calloc((size_t)tiles_count(tiles), sizeof *tiles->done);
+    enum status status = tiles->done ? journal_take(tiles->path, tiles->writer, &tiles->journal, &first)
+                                     : tiles_fail(tiles, "out of memory for its tiles");
+    char *text = status == STATUS_OK ? journal_read(tiles->journal, &tiles->journal_end) : NULL;
+    if (status == STATUS_OK)
+        status =
+            text ? text_take(tiles, text, first, settings, origin) : tiles_fail(tiles, "its journal cannot be read");
+    free(text);
+    if (status == STATUS_OK)
+        status = own_take(tiles);
+    if (status == STATUS_OK && tiles->writer > 0)
+        journal_share(tiles->journal);
     if (status != STATUS_OK)
         tiles_close(tiles);
     return status;
@@ -400,21 +412,32 @@ enum status tiles_open(struct tiles *tiles, const char *settings, const struct i
     return status;
 }
 
-enum status tiles_seal(struct tiles *tiles)
+enum status tiles_seal(struct tiles *tiles, bool *sealed)
 {
-    char name[PATH_MAX];
-    snprintf(name, sizeof name, "%s" TILES_JOURNAL, tiles->path);
+    int claimed = 0, count = 0;
+    if (tiles->writer > 0 && tiles_claimed(tiles->path, &claimed, &count) && claimed >= count)
+        journals_each(tiles->path, other_verify, tiles);
+    *sealed = journal_is_gone(tiles->journal);
+    if (*sealed || tiles_done(tiles) < tiles_count(tiles))
+        return STATUS_OK;
     errno = 0;
-    return status_write(tiles, whole) && unlink(name) == 0 ? STATUS_OK : tiles_fail(tiles, "cannot be finished");
+    const bool finished =
+        status_write(tiles, whole) && (journal_remove(tiles->path) || journal_is_gone(tiles->journal));
+    if (finished)
+        journals_clear(tiles->path);
+    *sealed = finished;
+    return finished ? STATUS_OK : tiles_fail(tiles, "cannot be finished");
 }
 
 void tiles_close(struct tiles *tiles)
 {
     if (tiles->file >= 0)
         close(tiles->file);
+    if (tiles->own >= 0 && tiles->own != tiles->journal)
+        close(tiles->own);
     if (tiles->journal >= 0)
         close(tiles->journal);
     free(tiles->done);
     tiles->done = NULL;
-    tiles->file = tiles->journal = -1;
+    tiles->file = tiles->journal = tiles->own = -1;
 }

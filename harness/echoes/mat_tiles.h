@@ -6,18 +6,19 @@
 #define SASBENCH_ECHOES_MAT_TILES_H
 
 #include "echoes/matfile.h"
+#include "echoes/tile_journals.h"
 
 #include <sys/types.h>
-
-#define TILES_JOURNAL ".tiles" /* appended to the file's name */
 
 struct tiles {
     const char *path;         /* these are set by the caller */
     struct grid grid;         /* of the whole image */
     enum precision precision; /* of its pixels */
     int rows, columns;        /* of a tile; the last ones may have less */
+    int writer;               /* from 1, where several fill the file, each its own tiles; 0: one alone */
+    bool anew;                /* an image that is there without a journal is replaced, though there are writers */
     bool *done;               /* [tiles_count] */
-    int file, journal;
+    int file, journal, own;   /* `journal`: of the settings; `own`: of this writer's tiles */
     off_t image_at, status_at, journal_end;
 };
 
@@ -28,16 +29,17 @@ struct pixel_window tiles_window(const struct tiles *tiles, int number);
 
 /* Create the file, or continue one: the tiles of its journal are verified by their checksums, and are done. `settings`:
    lines "KEY: VALUE" of all that determines pixels but for the tiles themselves. Errors: STATUS_INVALID where its
-   settings differ (the first that differs is named), where another program fills it, and as image_file_write; nothing
-   to close then. */
+   settings differ (the first that differs is named), where another program fills it, where a writer finds an image
+   without a journal, which others have finished, and as image_file_write; nothing to close then. */
 enum status tiles_open(struct tiles *tiles, const char *settings, const struct image_origin *origin);
 /* Write pixels [rows][columns] of a tile to the disk. Errors: STATUS_FAILED. */
 enum status tiles_write(struct tiles *tiles, int number, const void *pixels);
-/* Finish the file: all tiles are done. Errors: STATUS_FAILED. */
-enum status tiles_seal(struct tiles *tiles);
+/* Finish the file where all tiles are done, those of other writers verified as by tiles_open: *sealed, also where
+   another writer did it. Errors: STATUS_FAILED. */
+enum status tiles_seal(struct tiles *tiles, bool *sealed);
 void tiles_close(struct tiles *tiles);
 
-/* What the journal beside an image file claims, unverified; false where there is none. */
+/* What the journals beside an image file claims, unverified; false where there is none. */
 bool tiles_claimed(const char *path, int *done, int *count);
 
 #endif

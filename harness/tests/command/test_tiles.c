@@ -109,6 +109,70 @@ static void killed(void **state)
     assert_false(support_exists("x.mat" TILES_JOURNAL));
 }
 
+/* Shards begin together, and one of them is killed and begun again: the last to end finishes the file. */
+static void shards_fill_one_file(void **state)
+{
+    (void)state;
+    enum { SHARDS = 3 };
+    static const char *const parts[SHARDS] = {"1/3", "2/3", "3/3"};
+    struct random random = random_seed(39, 2);
+    program_good((const char *const[]){IMAGE("reference", "whole.mat"), NULL});
+    for (int n = 0; n < 4; n++) {
+        pid_t children[SHARDS];
+        FILE *sink = tmpfile();
+        int status;
+        unlink(path_of("s.mat"));
+        for (int k = 0; k < SHARDS; k++)
+            children[k] = program_start(
+                (const char *const[ARGUMENTS_MAX]){IMAGE("reference", "s.mat"), "--tile", "8x2", "--shard", parts[k]},
+                sink, sink);
+        nanosleep(&(struct timespec){.tv_nsec = (long)(1e8 * random_uniform(&random))}, NULL);
+        kill(children[n % SHARDS], SIGKILL);
+        for (int k = 0; k < SHARDS; k++)
+            assert_int_equal(waitpid(children[k], &status, 0), children[k]);
+        fclose(sink);
+        if (support_exists("s.mat" TILES_JOURNAL))
+            program_good((const char *const[ARGUMENTS_MAX]){IMAGE("reference", "s.mat"), "--tile", "8x2", "--shard",
+                                                            parts[n % SHARDS]});
+        assert_same_image("whole.mat", "s.mat");
+        for (int k = 0; k <= SHARDS; k++) {
+            char name[60];
+            snprintf(name, sizeof name, k ? "s.mat" TILES_JOURNAL ".%d" : "s.mat" TILES_JOURNAL, k);
+            assert_false(support_exists(name));
+        }
+    }
+    /* A shard does not replace what is finished. */
+    static const struct refusal refusals[] = {
+        {{IMAGE("reference", "s.mat"), "--tile", "8x2", "--shard", "1/3"}, {"s.mat", "without a journal"}},
+        {{IMAGE("reference", "t.mat"), "--shard", "1/3"}, {"--shard 1/3", "--tile"}},
+    };
+    assert_all_refused(refusals, COUNT_OF(refusals));
+    assert_same_image("whole.mat", "s.mat");
+}
+
+/* What shards have begun, a process by itself finishes; while one of them runs, it is refused. */
+static void one_finishes_shards(void **state)
+{
+    (void)state;
+    int done, count;
+    unlink(path_of("s.mat"));
+    program_good((const char *const[ARGUMENTS_MAX]){IMAGE("reference", "s.mat"), "--tile", "8x2", "--shard", "2/3"});
+    assert_true(tiles_claimed(path_of("s.mat"), &done, &count));
+    assert_in_range(done, count / 3, count / 3 + 1);
+    const int journal = open(path_of("s.mat" TILES_JOURNAL), O_RDWR);
+    assert_int_equal(flock(journal, LOCK_SH | LOCK_NB), 0);
+    struct outcome outcome = program_run((const char *const[]){IMAGE("reference", "s.mat"), "--tile", "8x2", NULL});
+    assert_int_equal(outcome.status, 2);
+    outcome_free(&outcome);
+    close(journal);
+    char *told = program_output((const char *const[ARGUMENTS_MAX]){IMAGE("reference", "s.mat"), "--tile", "8x2"}),
+         wanted[60];
+    snprintf(wanted, sizeof wanted, "%d of %d tiles were done", done, count);
+    assert_non_null(strstr(told, wanted));
+    free(told);
+    assert_same_image("whole.mat", "s.mat");
+}
+
 static void others_are_refused(void **state)
 {
     (void)state;
@@ -176,6 +240,8 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(bits_of_the_whole),
                                        cmocka_unit_test(recordings_are_read_in_part),
                                        cmocka_unit_test(killed),
+                                       cmocka_unit_test(shards_fill_one_file),
+                                       cmocka_unit_test(one_finishes_shards),
                                        cmocka_unit_test(others_are_refused),
                                        cmocka_unit_test(damage_is_mended),
                                        cmocka_unit_test(full_disks_are_told)};
