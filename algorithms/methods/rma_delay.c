@@ -12,9 +12,8 @@ static const struct param params[] = {
      .initial = 2, .max = 3, .sweep = "8 12 16 24"},
     {PARAM(struct rma_options, terms), .summary = "terms over the receivers for what the delays leave", .initial = 2,
      .min = 1, .max = 3, .sweep = "1 2 3"},
-    {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names),
-     .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .initial = 3, .max = 5, .terse = true,
-     .hidden = true},
+    {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names), .summary = "Kaiser taps of the Stolt interpolation",
+     .initial = 2, .max = 4, .terse = true, .hidden = true},
     {.name = NULL},
 };
 

@@ -175,113 +175,34 @@ static void spectrum(const struct workspace *w, const real *cut, real *re)
     }
 }
 
-/* Rows of a patch without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose
-   samples count from time `origin`. */
-static void focus_direct(struct workspace *w, const struct rma_patch *patch, const real *z, double origin, real *stored)
-{
-    const struct rma *rma = w->rma;
-    const struct rma_swath *swath = w->swath;
-    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c, b1 = (1 - beta) * (1 + beta);
-    const double shift = 0.125 + rma_shift(swath, patch, w->q);
-    const int rows = patch->grid.r_count;
-    real *parts = buffer(w, RMA_PARTS);
-    memset(parts, 0, (size_t)rows * 2 * LANES * sizeof *parts);
-    for (int k = w->line.begin / LANES * LANES; k < swath->band; k += LANES) {
-        double k_cycles[LANES], origin_cycles[LANES], weight[LANES];
-        real zr[LANES], zi[LANES], wr[LANES], wi[LANES], sr[LANES], si[LANES];
-        for (int l = 0; l < LANES; l++) {
-            bool exists = k + l >= w->line.begin && k + l < swath->band;
-            double frequency = rma_frequency(rma, swath, exists ? k + l : swath->band - 1);
-            k_cycles[l] = spectrum_monostatic(&rma->setting, frequency, w->line.nu) / (2 * M_PI);
-            double kappa = c / 2 * k_cycles[l];
-            origin_cycles[l] = shift - (frequency - rma->setting.fc) * origin;
-            weight[l] = exists ? frequency / b1 * sqrt(c / (2 * kappa)) / kappa / swath->length : 0;
-            double step = k_cycles[l] * patch->grid.r_step;
-            phasor(step - floor(step + 0.5), &sr[l], &si[l]);
-        }
-        for (int i0 = 0; i0 < rows; i0 += RMA_STEPS) {
-            int n = rows - i0 < RMA_STEPS ? rows - i0 : RMA_STEPS;
-            for (int l = 0; l < LANES; l++) {
-                double f = k_cycles[l] * (patch->grid.r_first + i0 * patch->grid.r_step) + origin_cycles[l];
-                phasor(f - floor(f + 0.5), &wr[l], &wi[l]);
-                zr[l] = z[2 * k + l] * (real)weight[l];
-                zi[l] = z[2 * k + LANES + l] * (real)weight[l];
-            }
-            for (int i = 0; i < n; i++) {
-                real *part = parts + (size_t)(i0 + i) * 2 * LANES;
-#pragma omp simd
-                for (int l = 0; l < LANES; l++) {
-                    part[l] += zr[l] * wr[l] - zi[l] * wi[l];
-                    part[LANES + l] += zr[l] * wi[l] + zi[l] * wr[l];
-                    real t = wr[l] * sr[l] - wi[l] * si[l];
-                    wi[l] = wr[l] * si[l] + wi[l] * sr[l];
-                    wr[l] = t;
-                }
-            }
-        }
-    }
-    for (int i = 0; i < rows; i++) {
-        real re = 0, im = 0;
-        for (int l = 0; l < LANES; l++) {
-            re += parts[(size_t)i * 2 * LANES + (size_t)l];
-            im += parts[(size_t)i * 2 * LANES + LANES + (size_t)l];
-        }
-        stored[2 * i] = re;
-        stored[2 * i + 1] = im;
-    }
-    stage_end(w, RMA_FOCUS);
-}
-
 /* The blocks' spectra as one signal of samples from `centre` on. */
 static void reconstruct(struct workspace *w, real *sums, real *cut)
 {
     const struct rma_swath *swath = w->swath;
-    const int summed = w->rma->options.sum == RMA_SUM_BEFORE ? 1 : w->rma->receivers;
-    const bool whole = swath->needed * summed == 1;
+    const bool whole = swath->needed == 1;
     real *place = buffer(w, RMA_PLACES);
     memset(cut, 0, 2 * (size_t)swath->stolt_length * sizeof *cut);
     if (!whole)
         places(w, place);
-    for (int n = 0; n < swath->needed; n++)
-        for (int m = 0; m < summed; m++, sums += 2 * swath->row) {
-            mask(w, sums);
-            add_block(w, sums, swath->blocks[n], whole ? NULL : place, cut);
-        }
+    for (int n = 0; n < swath->needed; n++, sums += 2 * swath->row) {
+        mask(w, sums);
+        add_block(w, sums, swath->blocks[n], whole ? NULL : place, cut);
+    }
 }
 
 /* `samples`: delay compensation's. */
 static void column(struct workspace *w, const real *samples, real *stored)
 {
-    const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
     real *sums = buffer(w, RMA_SUMS), *cut = buffer(w, RMA_CUT), *z = buffer(w, RMA_SPECTRUM);
-    const bool direct = rma->taps == 0;
-    const bool from_sums = direct && swath->needed == 1 && rma->options.sum == RMA_SUM_BEFORE && !rma->delay;
-    if (!rma->delay)
+    if (!w->rma->delay) {
         REAL_ISA_NAME(rma_convert)(w, sums);
-    if (!from_sums) {
-        if (!rma->delay)
-            reconstruct(w, sums, cut);
-        spectrum(w, rma->delay ? samples : cut, z);
+        reconstruct(w, sums, cut);
     }
-    if (direct && !from_sums) { /* its transform is as long as the conversion's */
-        int first = swath->band_first + swath->length / 2 + RMA_GUARD;
-        for (int k = 0; k < swath->band; k++)
-            for (int part = 0; part < 2; part++)
-                sums[2 * (k / LANES * LANES) + k % LANES + part * LANES] =
-                    z[part * (swath->length + 2 * RMA_GUARD) + first + k];
-    }
-    if (direct)
-        mask(w, sums);
+    spectrum(w, w->rma->delay ? samples : cut, z);
     stage_end(w, RMA_RECONSTRUCT);
-    for (int p = 0; p < swath->patch_count; p++) {
-        const struct rma_patch *patch = &swath->patches[p];
-        real *out = stored + 2 * patch->row;
-        if (direct)
-            focus_direct(w, patch, sums, swath->t_first + (from_sums ? 0 : swath->centre) / rma->fs, out);
-        else
-            REAL_ISA_NAME(rma_stolt)(w, patch, z, out);
-    }
+    for (int p = 0; p < swath->patch_count; p++)
+        REAL_ISA_NAME(rma_stolt)(w, &swath->patches[p], z, stored + 2 * swath->patches[p].row);
 }
 
 /* Rows of `count` wavenumbers, `stride` reals apart, side by side in `focused`. */

@@ -12,9 +12,8 @@
 #include "range_migration/rma_engine.h"
 
 static const char *const variants[] = {"printed", "corrected", NULL}, *const spacings[] = {"uniform", "inverse", NULL},
-                         *const blends[] = {"off", "on", NULL}, *const orders[] = {"before", "after", NULL},
-                         *const phases[] = {"recurrence", "libm", NULL};
-const char *const rma_stolt_names[] = {"direct", "4", "6", "8", "12", "16", NULL};
+                         *const blends[] = {"off", "on", NULL}, *const phases[] = {"recurrence", "libm", NULL};
+const char *const rma_stolt_names[] = {"4", "6", "8", "12", "16", NULL};
 const char *const rma_delay_taps_names[] = {"8", "12", "16", "24", NULL};
 
 const struct param rma_params[] = {
@@ -29,11 +28,8 @@ const struct param rma_params[] = {
     {PARAM_NAMED(struct rma_options, blend, blends),
      .summary = "blocks blend: each row is the cubic through the nearest four", .initial = 1, .max = 1,
      .sweep = "off on", .terse = true},
-    {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names),
-     .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .initial = 3, .max = 5,
-     .sweep = "4 6 8 12 16", .terse = true},
-    {PARAM_NAMED(struct rma_options, sum, orders), .summary = "receivers are summed before or after the range IFFT",
-     .initial = RMA_SUM_BEFORE, .max = RMA_SUM_AFTER, .terse = true, .hidden = true},
+    {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names), .summary = "Kaiser taps of the Stolt interpolation",
+     .initial = 2, .max = 4, .sweep = "4 6 8 12 16", .terse = true},
     {PARAM_NAMED(struct rma_options, phases, phases),
      .summary = "by recurrence over the receivers, or by libm for each cell", .initial = RMA_RECURRENCE,
      .max = RMA_LIBM, .terse = true, .hidden = true},
@@ -56,8 +52,7 @@ static const struct rma_transform *transform(const struct rma *rma)
 static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
 {
     const double receivers = rma->receivers, band = swath->band, q = swath->wavenumbers, length = swath->length;
-    const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
-    const double weights = swath->needed * sums > 1 ? 4 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
+    const double weights = swath->needed > 1 ? 4 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
     double flops = q * (fft_flops(swath->stolt_length) + 2 * length);
     if (rma->delay)
         flops += receivers
@@ -67,12 +62,12 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
     else
         flops += receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
                  + q * receivers * band * (rma->converts ? 8 : 0) * swath->needed
-                 + q * sums * (swath->needed * fft_flops(length) + weights * length);
+                 + q * (swath->needed * fft_flops(length) + weights * length);
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         double rows = patch->grid.r_count,
                points = patch->length * patch->step * 2 * rma->fs / rma->setting.sound_speed;
-        flops += q * (rma->taps ? points * (4.0 * rma->taps + 8) + fft_flops(patch->length) : rows * band * 8);
+        flops += q * (points * (4.0 * rma->taps + 8) + fft_flops(patch->length));
         flops +=
             rows
             * (patch->folds ? fft_flops(patch->columns) + 2 * q : 2 * fft_flops(patch->columns) + 6 * patch->columns);
@@ -88,7 +83,7 @@ static void count_published(struct rma *rma)
     const struct rma_method *method = &rma->method;
     struct work *work = &rma->work;
     double receivers = rma->receivers, na = (double)rma->pings * receivers, nr = rma->samples;
-    double taps = rma->taps ? rma->taps : 8, range = method->range[0] * receivers + method->range[1];
+    double taps = rma->taps, range = method->range[0] * receivers + method->range[1];
     double azimuth = method->azimuth[0] * receivers + method->azimuth[1];
     double products = method->products[0] * receivers + method->products[1];
     if (!method->source)
@@ -139,7 +134,6 @@ static enum status count_work(struct rma *rma)
         {true, "azimuth correction: the monostatic phase is exact", {0}},
         {!rma->converts && !rma->delay, "; conversion: one receiver at the transmitter", {0}},
         {rma->converts && !rma->delay && !differential, "; differential preprocessing: one block", {0}},
-        {rma->taps == 0, "; Stolt interpolation: direct sum", {0}},
         {needed < rma->block_count, "; %.0f blocks without rows", {rma->block_count - needed, 0}},
         {taken < rma->samples, "; %.0f %% of each record", {100 * (1 - taken / rma->samples)}},
         {bins < all && !rma->delay,

@@ -19,7 +19,7 @@
 
    bulk          [M][row] -> [M][RMA_SPAN], for RMA_SPAN bins at a time
                  each receiver's correction at the range of the reference block, whose own sum is then complete
-   differential  [M][RMA_SPAN] -> [N][row], or [N][M][row] with sum=after; takes turns with bulk until all bins are done
+   differential  [M][RMA_SPAN] -> [N][row]; takes turns with bulk until all bins are done
                  the rest of the correction for each other block, summed over the receivers
    reconstruct   [N][row] -> [length] samples in range -> [RMA_GUARD + stolt_length + RMA_GUARD] bins
                  an IFFT of `length` for each block; each sample is its block's, or blends the nearest four; samples
@@ -45,9 +45,7 @@
                  in two steps where receivers are even (rma_fold)
    stolt         begins with the zeros and the FFT of reconstruct
 
-   Shortcuts: a single receiver at the transmitter needs no bulk and no differential. With stolt=direct, focus sums each
-   bin of the band at each row, without stolt and IFFT. If then one block is needed and sum=before, there is nothing to
-   reconstruct either. */
+   Shortcuts: a single receiver at the transmitter needs no bulk and no differential. */
 #ifndef SASBENCH_RANGE_MIGRATION_RMA_ENGINE_H
 #define SASBENCH_RANGE_MIGRATION_RMA_ENGINE_H
 
@@ -70,7 +68,6 @@ enum {
     RMA_NODES = 4,        /* blocks that blend at one range: a cubic */
     RMA_GUARD = 16,       /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024, /* of the Stolt kernel's table, linear inside each */
-    RMA_STEPS = 16,       /* range rows between fresh phases of a direct sum */
     RMA_RUN = 16          /* samples of a record that share the taps of their delay */
 };
 
@@ -79,14 +76,13 @@ enum rma_buffer {
     RMA_RAMPS,       /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
     RMA_ABSCISSAS,   /* double [row]: y of each bin */
     RMA_CONVERTED,   /* [receivers][RMA_SPAN]: some bins after the bulk correction */
-    RMA_SUMS,        /* [needed][1 or receivers][row]: spectra of each block */
+    RMA_SUMS,        /* [needed][row]: spectra of each block */
     RMA_WAVE,        /* complex [longest transform of a swath] */
     RMA_TRANSFORMED, /* complex [longest transform]: the transform of RMA_WAVE */
     RMA_CUT,         /* complex [stolt_length]: the blocks put together, from sample `centre` on; delay
                         compensation's [rma_turns][row]: samples */
     RMA_PLACES,      /* real [length]: position of those samples in blocks */
     RMA_SPECTRUM,    /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
-    RMA_PARTS,       /* [most rows of a patch]: vectors of a direct sum's re and im */
     RMA_STORED,      /* complex [RMA_TILE][rows + RMA_TILE] */
     RMA_RECORD,      /* complex [record_length] */
     RMA_PADDED,      /* complex [held + 2 map guards]: delay compensation's */
@@ -229,7 +225,7 @@ struct rma {
 
     struct rma_delay *delay; /* NULL: by blocks */
 
-    int taps;     /* of the Stolt interpolation; 0: direct sum */
+    int taps;     /* of the Stolt interpolation */
     double shape; /* the Kaiser kernel's parameter */
     void *kernel; /* real [RMA_INTERVALS + 2][taps] */
 

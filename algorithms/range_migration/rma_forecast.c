@@ -10,8 +10,8 @@
 #include "common/kaiser.h"
 #include "range_migration/rma_engine.h"
 
-static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
-static const double STOLT_SHARE = 4;                  /* of kaiser_error: measured */
+static const int stolt_taps[] = {4, 6, 8, 12, 16}; /* of rma_stolt_names */
+static const double STOLT_SHARE = 4;               /* of kaiser_error: measured */
 /* rad, root mean square over a block, for each rad at its ends: a lone block is used up to 1/(4 pi); several that blend
    have less (docs/range_migration.md). */
 static const double BLOCK_SHARE = 0.08;
@@ -115,8 +115,7 @@ static double share_kept(const struct rma *rma, const struct rma_swath *swath)
 
 static void swath_cost(const struct rma *rma, const struct rma_swath *swath, double cost[MIGRATIONS])
 {
-    const double receivers = rma->receivers, length = swath->length,
-                 sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    const double receivers = rma->receivers, length = swath->length;
     const double all = swath->wavenumbers, kept = all * share_kept(rma, swath);
     cost[MIGRATION_SPREAD] += all * swath->row;
     cost[MIGRATION_FOCUS] += kept * swath->stolt_length;
@@ -126,13 +125,12 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
     } else {
         cost[MIGRATION_RECORDS] += receivers * rma->pings * fft_flops(length);
         cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * 8 * swath->needed : 0;
-        cost[MIGRATION_FOCUS] += kept * swath->needed * sums * length;
+        cost[MIGRATION_FOCUS] += kept * swath->needed * length;
     }
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         const double rows = patch->grid.r_count;
-        cost[MIGRATION_FOCUS] +=
-            kept * (rma->taps ? patch->length * (1 + rma->taps / 8.0) : rows * swath->band) + rows * patch->columns;
+        cost[MIGRATION_FOCUS] += kept * patch->length * (1 + rma->taps / 8.0) + rows * patch->columns;
     }
 }
 
@@ -155,8 +153,7 @@ static enum status settings_errors(const struct problem *problem, const struct r
                           : !view.converts ? 0
                           : lawless        ? INFINITY
                                            : BLOCK_SHARE * options->limit;
-    if (stolt_taps[options->stolt] > 0)
-        error[CAUSE_STOLT] = STOLT_SHARE * kaiser_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
+    error[CAUSE_STOLT] = STOLT_SHARE * kaiser_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
     error[CAUSE_FLOAT] = ROUNDING[problem->precision];
     return isnan(error[CAUSE_DELAYS]) || isnan(error[CAUSE_BLOCKS])
                ? status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", method->name)

@@ -15,7 +15,7 @@ static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: 
 static const double OUTSIDE_MOST = 2;  /* of the record's length: rows outside it */
 static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no pulse wraps around the cut */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
-static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
+static const int stolt_taps[] = {4, 6, 8, 12, 16};
 
 static enum status too_long(const struct rma *rma, const struct rma_swath *swath, double samples)
 {
@@ -253,8 +253,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->t_first = rma->t0 + from / rma->fs;
     swath->centre = (int)((to - from) / 2);
     swath->length = fft_length_fast((long long)(to - from) + 1 + RMA_GUARD);
-    swath->stolt_length =
-        rma->taps == 0 ? swath->length : fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
+    swath->stolt_length = fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
         return too_long(rma, swath, RMA_OVERSAMPLING * (to - from));
 
@@ -291,8 +290,8 @@ static enum status swath_samples(const struct rma *rma, struct rma_swath *swath)
     swath->row = (swath->held + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
     /* Rows a power of two apart would share some sets of the cache. */
     swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
-    if (rma->taps > 0) /* as much to either side of `centre` as lies behind it */
-        swath->stolt_length = fft_length_fast((long long)ceil(RMA_OVERSAMPLING * 2 * (swath->held - swath->centre)));
+    /* As much to either side of `centre` as lies behind it. */
+    swath->stolt_length = fft_length_fast((long long)ceil(RMA_OVERSAMPLING * 2 * (swath->held - swath->centre)));
     return STATUS_OK;
 }
 
@@ -383,28 +382,26 @@ static enum status lay_record(struct rma *rma)
 static void lay_scratch(struct rma *rma)
 {
     const size_t real_bytes = rma->problem.precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
-    const size_t receivers = (size_t)rma->receivers, summed = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    const size_t receivers = (size_t)rma->receivers;
     const size_t record = 2 * (size_t)rma->record_length * real_bytes;
     size_t most[RMA_BUFFERS] = {[RMA_RECORD] = record, [RMA_TRANSFORMED] = record};
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         size_t row = 2 * (size_t)s->row * real_bytes, stolt = (size_t)s->stolt_length, needed = (size_t)s->needed;
-        size_t longest = stolt, most_rows = 0, terms = rma->delay ? (size_t)rma->delay->terms.terms : 0;
+        size_t longest = stolt, terms = rma->delay ? (size_t)rma->delay->terms.terms : 0;
         for (int k = 0; k < s->patch_count; k++) {
-            size_t rows = (size_t)s->patches[k].grid.r_count, length = (size_t)s->patches[k].length;
+            size_t length = (size_t)s->patches[k].length;
             longest = length > longest ? length : longest;
-            most_rows = rows > most_rows ? rows : most_rows;
         }
         const size_t bytes[RMA_BUFFERS] = {
             [RMA_RAMPS] = (1 + needed) * (size_t)rma->groups * sizeof(struct rma_ramp),
             [RMA_ABSCISSAS] = (size_t)s->row * sizeof(double),
             [RMA_CONVERTED] = receivers * 2 * RMA_SPAN * real_bytes,
-            [RMA_SUMS] = needed * summed * row,
+            [RMA_SUMS] = needed * row,
             [RMA_WAVE] = 2 * longest * real_bytes,
             [RMA_TRANSFORMED] = 2 * longest * real_bytes,
             [RMA_CUT] = rma->delay ? (size_t)rma_turns(rma) * row : 2 * stolt * real_bytes,
             [RMA_PLACES] = (size_t)s->length * real_bytes,
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
-            [RMA_PARTS] = rma->taps == 0 ? most_rows * 2 * RMA_ALIGNMENT : 0,
             [RMA_STORED] = 2 * RMA_TILE * (s->rows + RMA_TILE) * real_bytes,
             [RMA_PADDED] = rma->delay ? 2 * ((size_t)rma->held + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
             [RMA_TURNS] = rma->delay ? 2 * RMA_CLASSES * receivers * real_bytes : 0,

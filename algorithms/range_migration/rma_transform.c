@@ -50,7 +50,7 @@ static void kernel_fill(const struct rma *rma)
 {
     real *kernel = rma->kernel;
     int taps = rma->taps;
-    for (int i = 0; taps && i < RMA_INTERVALS + 2; i++)
+    for (int i = 0; i < RMA_INTERVALS + 2; i++)
         for (int k = 0; k < taps; k++)
             kernel[i * taps + k] = (real)kaiser_value(taps, rma->shape, (double)i / RMA_INTERVALS - (1 - taps / 2 + k));
 }
@@ -62,7 +62,7 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
     int taps = rma->taps, length = swath->stolt_length;
     for (int j = 0; j < length; j++) {
         double place = fmin(fabs((double)(j < length - length / 2 ? j : j - length) / length), 0.5 / RMA_OVERSAMPLING);
-        double transform = taps ? kaiser_transform(taps, rma->shape, place) : 1;
+        double transform = kaiser_transform(taps, rma->shape, place);
         apodization[j] = (real)(1 / (transform * (rma->delay ? 1 : swath->length)));
     }
 }

@@ -47,7 +47,6 @@ static const char *const settings[] = {
     "rma_wu:blocks=16",
     "rma_numeric:blocks=16,stolt=16",
     "rma_numeric:blocks=16,stolt=16,precision=double",
-    "rma_numeric:stolt=direct,precision=double",
     "rma_delay:terms=1",
     "rma_delay:taps=24,terms=3,stolt=16,precision=double",
     "wk_classic:unfold=stuff",
