@@ -4,7 +4,7 @@
        const struct sas_algorithm sas_plugin = {sizeof sas_plugin, SAS_ABI, "my back projection", ...};
 
    A plug-in is a shared object that defines the constant `sas_plugin`. `./sasbench run --algorithm ./my.so:taps=8`
-   measures it.
+   measures it, `./sasbench conformance ./my.so` checks the rules below.
 
    THE IMAGE. At each pixel of each patch, p = (x, y = r, z = 0) in the track's axes,
 
@@ -24,7 +24,7 @@
    - Units: m, s, Hz, rad. x runs along the track, r across it. Complex numbers are pairs of reals, real part first:
      float[2] or double[2] by the problem's precision. Delays and phases need double in either precision.
    - Arrays are dense, row by row as their comments state: [pings][receivers][samples] has the samples side by side.
-     Samples and pixels are aligned to one real of their precision, and to no more.
+     Samples and pixels are aligned to a complex number of their precision, and to no more.
    - plan does all that depends on geometry and settings: tables, transforms' plans, scratch memory for `threads`
      threads. What it receives (problem, acquisition, patches, settings, host) stays valid until destroy, read only.
    - execute is timed. It goes from samples to pixels, writes every pixel, depends on nothing but the samples, linearly,

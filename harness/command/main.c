@@ -103,6 +103,9 @@ static const struct command commands[] = {
      "[SCENE ...] [--algorithm SPEC ...] [-o DIR] [--quick] [--shard I/N]",
      "image extreme scenes in all rounding modes: verdicts and digits lost, against results/stability.csv", "oaQX", 0,
      INT_MAX, command_stability, false},
+    {"conformance", "test every promise of one algorithm, also of a plug-in", "SPEC",
+     "test every promise of one algorithm: image, bits, memory, work, settings; exit status 1 where one is broken", "",
+     1, 1, command_conformance, false},
     {"bench", "speed of the engines against the processor's peak", "[SPEC ...] [-o DIR]",
      "measure the speed of the engines, or of the SPECs, against the processor's peak and the scalar reference loop",
      "ot", 0, INT_MAX, command_bench, false},
@@ -152,8 +155,8 @@ static void help(void)
            "Usage: sasbench COMMAND [ARGUMENTS]; begin with: ./sasbench run\n\n");
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
         if (!commands[k].hidden)
-            printf("  %-10s %s\n", commands[k].name, commands[k].brief);
-    printf("  %-10s %s\n", "test", "verify this build (a command of the script ./sasbench)");
+            printf("  %-11s %s\n", commands[k].name, commands[k].brief);
+    printf("  %-11s %s\n", "test", "verify this build (a command of the script ./sasbench)");
     printf("\nhelp COMMAND     its arguments and options\nhelp columns     the columns of a run's table\n"
            "--version        version, commit, compiler, libraries, instruction set\n");
     fputs(exit_text, stdout);

@@ -52,6 +52,7 @@ enum status task_scenes(const char *command, const struct task *task, int usual_
 
 /* Each returns STATUS_OK, or a status with a message for main to print. */
 enum status command_list(const struct task *task);
+enum status command_conformance(const struct task *task);
 enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);

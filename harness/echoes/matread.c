@@ -19,15 +19,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#ifdef __has_feature
-#if __has_feature(address_sanitizer)
-#define ADDRESS_SANITIZER
-#endif
-#endif
-#ifdef __SANITIZE_ADDRESS__
-#define ADDRESS_SANITIZER
-#endif
-
 enum {
     BLOCK = 4096,           /* numbers sent at a time */
     SPARE_BYTES = 256 << 20 /* what libmatio and HDF5 may use beyond the numbers themselves */
@@ -105,7 +96,7 @@ static void limit_resource(__rlimit_resource_t resource, rlim_t wish)
 static void limit_memory_and_time(size_t bytes)
 {
     limit_resource(RLIMIT_CPU, (rlim_t)(clock() / CLOCKS_PER_SEC) + 10 + bytes / 10000000);
-#ifndef ADDRESS_SANITIZER /* its shadow memory alone is terabytes of address space */
+#ifndef SANITIZED /* its shadow memory alone is terabytes of address space */
     unsigned long pages;
     FILE *file = fopen("/proc/self/statm", "r");
     if (file && fscanf(file, "%lu", &pages) == 1) {

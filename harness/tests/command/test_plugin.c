@@ -211,7 +211,7 @@ static void faults_lose_their_row(void **state)
     static const struct {
         const char *name, *edit, *status, *reason;
     } faults[] = {
-        {"crash", "s/host->stage(run, \"focus\")/raise(SIGSEGV)/", "failed", "ended by signal 11"},
+        {"crash", "s/host->stage(run, \"focus\")/abort()/", "failed", "ended by signal 6"},
         {"ends", "s/host->stage(run, \"focus\")/exit(0)/", "failed", "ended the program with exit status 0"},
         {"kept", "s/sum += value \\*/sum = 1 + value */", "failed", "the negated echoes is not the negated image"},
         {"refuses", "0,/return SAS_OK/s//return problem->host->fail(SAS_UNSUPPORTED, \"%d pings\", a->pings)/",
@@ -238,13 +238,41 @@ static void faults_lose_their_row(void **state)
     }
 }
 
+/* The template keeps its promises; a plug-in that does not is told which, all of them, with value and bound. */
+static void promises_are_checked(void **state)
+{
+    (void)state;
+    char *told = program_output((const char *const[ARGUMENTS_MAX]){"conformance", "./mine.so:taps=4"});
+    assert_non_null(strstr(told, "kept   ordinary: the error against reference is 0.0"));
+    assert_non_null(strstr(told, "./mine.so: 0 of "));
+    free(told);
+    assert_shell(
+        "sed 's/creal(sum)/0.9 * creal(sum)/; s/work->pairs = /&1 + /; "
+        "s/host->stage(run, \"compress\")/problem->acquisition->pings > 1 ? (void)0 : abort()/' mine.c >broken.c"
+        " && ./plug broken broken.c",
+        0);
+    struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"conformance", "./broken.so"});
+    assert_int_equal(outcome.status, 1);
+    assert_non_null(strstr(outcome.out, "BROKEN raw: the gain's distance from 1 is 0.0"));
+    assert_non_null(
+        strstr(outcome.out, "BROKEN raw: work.pairs is 25201, must be 0 or what pairs_count counts, 25200"));
+    assert_non_null(strstr(outcome.out, "BROKEN one ping, double: images ended by signal 6 (Aborted)"));
+    assert_non_null(strstr(outcome.out, "BROKEN sum of two echoes: "));
+    assert_non_null(strstr(outcome.err, "./broken.so breaks promises: see BROKEN above"));
+    outcome_free(&outcome);
+    outcome = program_run((const char *const[ARGUMENTS_MAX]){"conformance", "auto"});
+    assert_int_equal(outcome.status, 2);
+    assert_non_null(strstr(outcome.err, "auto chooses among the algorithms"));
+    outcome_free(&outcome);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(header_is_public),         cmocka_unit_test(template_is_measured),
         cmocka_unit_test(rebuilt_is_measured_anew), cmocka_unit_test(names_stay_apart),
         cmocka_unit_test(earlier_header_is_taken),  cmocka_unit_test(faulty_objects_are_refused),
-        cmocka_unit_test(faults_lose_their_row),
+        cmocka_unit_test(faults_lose_their_row),    cmocka_unit_test(promises_are_checked),
     };
     return cmocka_run_group_tests_name("plugin", tests, plugin_make, folder_remove);
 }

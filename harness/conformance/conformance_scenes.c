@@ -1,10 +1,9 @@
-#include "tests/algorithms/conformance_scenes.h"
+#include "conformance/conformance_scenes.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "scene/simulate.h"
-#include "tests/assertions.h"
 
 const struct setting settings[SETTINGS] = {
     {"ordinary", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, 0},
@@ -22,7 +21,14 @@ const struct setting settings[SETTINGS] = {
     {"monostatic", 48, 1, 0, 2.5, 30e3, 30, 29.75, true, false, 0.18, 0},
     {"aperture limit", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_APERTURE_LIMIT},
     {"turned image", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, true, false, 0.15, 0, 0.02},
+    {"turned grid", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, 0, -0.4},
+    {"towards -x", 8, 6, -0.04, -2.5, 30e3, 30, 29.75, true, false, 0.15, 0, 0, PLACE_BACKWARD},
+    {"towards -x, one receiver", 48, 1, 0, -2.5, 30e3, 30, 29.75, true, false, 0.18, 0, 0, PLACE_BACKWARD},
+    {"ends of the record", 8, 6, 0.04, 2.5, 30e3, 30, 29.5, false, false, 0.15, 0, 0, PLACE_ENDS},
+    {"both sides of r = 0", 8, 6, 0.04, 2.5, 30e3, 0.4, -0.2, false, false, 0.3, 0},
+    {"two patches", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, true, false, 0.19, 0, 0, PLACE_PATCHES},
 };
+
 /* A track that bends across and in depth by many wavelengths, on which the array turns as well; velocity and time of
    the first sample change from ping to ping. */
 static void bend(struct acquisition *a)
@@ -40,17 +46,19 @@ static void bend(struct acquisition *a)
     }
 }
 
-void make_scene(const struct setting *setting, struct scene *scene, struct grid *grid)
+enum status make_scene(const struct setting *setting, struct scene *scene, struct grid grids[2])
 {
     double spacing = 0.02 * (setting->receivers > 1 ? setting->receivers : 2), duration = 2e-3;
-    int samples = setting->fs > 20e3 ? 1024 : 512;
+    const bool ends = setting->place == PLACE_ENDS, backward = setting->place == PLACE_BACKWARD;
+    int samples = ends ? 40 : setting->fs > 20e3 ? 1024 : 512;
     double first = floor(fmax(0, 2 * setting->r / 1500 * setting->fs - samples / 4));
-    bool straight_down = setting->r < 1 || setting->promise == TRAIT_ANY_TRACK; /* element beams would see nothing */
+    /* Where element beams would see nothing. */
+    bool straight_down = setting->r < 1 || setting->promise == TRAIT_ANY_TRACK || fabs(setting->angle) > 0.1;
     *scene = (struct scene){.pulse_kind = setting->raw ? PULSE_LFM : PULSE_FLAT,
                             .pulse_duration = duration,
                             .beam = {straight_down ? BEAM_RECT : BEAM_TXRX, TRUNCATION_NONE, 0, false},
-                            .patch_count = 1,
-                            .patches = grid};
+                            .patch_count = setting->place == PLACE_PATCHES ? 2 : 1,
+                            .patches = grids};
     struct acquisition *a = &scene->acquisition;
     *a = (struct acquisition){.sound_speed = 1500,
                               .fc = 150e3,
@@ -64,13 +72,15 @@ void make_scene(const struct setting *setting, struct scene *scene, struct grid 
                               .aperture_limit = INFINITY,
                               .compressed = !setting->raw,
                               .pulse_length = setting->raw ? pulse_length_lfm(duration, setting->fs) : 0};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    scene->targets = calloc(1, sizeof *scene->targets);
+    if (!scene->targets || acquisition_allocate(a) != STATUS_OK)
+        return status_set(STATUS_FAILED, "no memory for the scene");
     for (int p = 0; p < a->pings; p++) {
         a->t0[p] = first / a->fs;
-        a->tx[p].x = (p - (a->pings - 1) / 2.0) * spacing;
+        a->tx[p].x = (p - (a->pings - 1) / 2.0) * (backward ? -spacing : spacing);
         a->velocity[p].x = setting->speed;
         for (int m = 0; m < a->receivers; m++)
-            a->rx[p * a->receivers + m].x = a->tx[p].x + setting->first_offset + 0.04 * m;
+            a->rx[p * a->receivers + m].x = a->tx[p].x + setting->first_offset + (backward ? -0.04 : 0.04) * m;
     }
     if (setting->promise == TRAIT_ANY_TRACK)
         bend(a);
@@ -78,16 +88,14 @@ void make_scene(const struct setting *setting, struct scene *scene, struct grid 
         a->aperture_limit = 0.008; /* 0.24 m of an aperture of 0.84 m to either side */
     if (setting->raw)
         pulse_lfm(a->bandwidth, duration, a->fs, a->pulse_length, a->pulse);
-    *grid = (struct grid){-0.24, 0.02, 25, setting->r_first, 0.025, 21, setting->angle};
+    grids[0] = (struct grid){-0.24, 0.02, 25, setting->r_first, 0.025, 21, setting->angle};
+    grids[1] = (struct grid){-0.1, 0.03, 14, setting->r_first + 0.1, 0.015, 17, setting->angle};
+    if (ends)
+        grids[0].r_step = 0.075;
     scene->target_count = scene->point_count = !setting->empty;
-    scene->targets = calloc(1, sizeof *scene->targets);
-    const struct vector place = grid_point(grid, (setting->r - grid->r_first) / grid->r_step, 0.251 / grid->x_step);
+    const struct vector place = grid_point(grids, (setting->r - grids->r_first) / grids->r_step, 0.251 / grids->x_step);
+    if (setting->receivers == 1 && backward)
+        a->area = (struct target_area){place.x, place.y, 0.5, 0.5};
     scene->targets[0] = (struct target){place.x, place.y, 1};
-    assert_int_equal(acquisition_check(a, setting->name), STATUS_OK);
-}
-
-void free_scene(struct scene *scene)
-{
-    free(scene->targets);
-    acquisition_free(&scene->acquisition);
+    return acquisition_check(a, setting->name);
 }
