@@ -150,10 +150,10 @@ enum trait {
 
 struct algorithm {
     const char *name, *summary, *reference; /* reference: paper and equations */
-    const char *origin; /* what identifies the code of one that the program does not contain, for provenance, a line */
-    unsigned traits;                        /* of enum trait */
-    size_t options_size;                    /* of the options struct; 0 without params */
-    const struct param *params;             /* NULL-terminated; NULL without options */
+    const char *origin;  /* what identifies the code of one that the program does not contain, for provenance, a line */
+    unsigned traits;     /* of enum trait */
+    size_t options_size; /* of the options struct; 0 without params */
+    const struct param *params; /* NULL-terminated; NULL without options */
     const void *method; /* its engine's description of it, passed to the callbacks; NULL: its callbacks are its own */
 
     /* Fill list[room] with the conditions of the problem, before any work, and return the number. `plan` refuses by the
