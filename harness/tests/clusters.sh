@@ -1,0 +1,72 @@
+#!/bin/sh
+# The scripts of docs/clusters.md, as they stand there, on a small sweep: the cells are those of one process. Without Slurm
+# its array tasks run one after the other, and a stand-in for srun begins them by mpirun. Usage: clusters.sh PROGRAM
+# SOURCE_ROOT MPIRUN (empty: built without MPI). Exit status 1 where a script fails, 77 where a tool is missing.
+set -eu
+program=$1 root=$2 mpirun=$3 skipped=0
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+export program mpirun
+
+# The program on a scene of its own.
+cat >sasbench <<'END'
+#!/bin/sh
+case $1 in
+    sweep) exec "$program" "$@" study/quick -a bp_nearest -a bp_zeropad:factor=4 ;;
+    *) exec "$program" "$@" ;;
+esac
+END
+mkdir bin
+cat >bin/srun <<'END'
+#!/bin/sh
+while case $1 in --*) ;; *) false ;; esac; do shift; done
+exec "$mpirun" -n "$SLURM_NTASKS" "$@"
+END
+chmod +x sasbench bin/srun
+command -v srun >/dev/null || { PATH=$PATH:$folder/bin; echo "no Slurm: a stand-in for srun"; }
+
+cells() { grep -v '^#' "$1/measurements.csv" | cut -d, -f1-4 | sort; }
+
+# script NUMBER TEXT TOOL: take the block of that number, which has the text; false where the tool is missing.
+script()
+{
+    awk -v wanted="$1" '/^```sh$/ { n++; inside = 1; next } /^```$/ { inside = 0 } inside && n == wanted' \
+        "$root/docs/clusters.md" >script
+    grep -q "$2" script || { echo "script $1 of docs/clusters.md is without $2"; exit 1; }
+    rm -rf parts results
+    [ -n "$(command -v "$3")" ] || { echo "skipped: $2, there is no $3"; skipped=77; return 1; }
+}
+
+check()
+{
+    cells results/sweep >found
+    cmp -s wanted found || { echo "script $1: other cells than one process has"; diff wanted found; exit 1; }
+    echo "script $1: $(wc -l <found) rows"
+}
+
+./sasbench sweep --threads 1 -o whole >/dev/null
+cells whole >wanted
+
+if script 1 parallel parallel; then
+    sh -e script >log 2>&1 || { cat log; exit 1; }
+    check 1
+fi
+if script 2 SBATCH sh; then
+    export SLURM_CPUS_PER_TASK=1
+    for SLURM_ARRAY_TASK_ID in 1 2 3 4; do
+        SLURM_ARRAY_TASK_ID=$SLURM_ARRAY_TASK_ID sh -e script >log 2>&1 || { cat log; exit 1; }
+    done
+    ./sasbench merge parts/* -o results/sweep >/dev/null
+    check 2
+fi
+if script 3 'mpirun -n' "${mpirun:-mpirun that this build has}"; then
+    PATH=$(dirname "$mpirun"):$PATH sh -e script >log 2>&1 || { cat log; exit 1; }
+    check 3
+fi
+if script 4 srun "${mpirun:-mpirun that this build has}"; then
+    SLURM_CPUS_PER_TASK=1 SLURM_NTASKS=2 sh -e script >log 2>&1 || { cat log; exit 1; }
+    check 4
+fi
+exit $skipped
