@@ -1,11 +1,12 @@
 #!/bin/sh
-# The scripts of docs/clusters.md, as they stand there, on a small sweep: the cells are those of one process. Without Slurm
-# its array tasks run one after the other, and a stand-in for srun begins them by mpirun. Usage: clusters.sh PROGRAM
-# SOURCE_ROOT MPIRUN (empty: built without MPI). Exit status 1 where a script fails, 77 where a tool is missing.
+# The scripts of docs/clusters.md, as they stand there, on a small sweep: the cells are those of one process. As root, a
+# Slurm of one node is begun where slurm-wlm and munge are installed; without it, array tasks run one after the other, and a
+# stand-in for srun begins ranks by mpirun. Usage: clusters.sh PROGRAM SOURCE_ROOT MPIRUN (empty: built without MPI). Exit
+# status 1 where a script fails, 77 where a tool is missing.
 set -eu
 program=$1 root=$2 mpirun=$3 skipped=0
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+trap 'for pid in "$folder"/*.pid; do [ ! -f "$pid" ] || kill "$(cat "$pid")" || :; done; rm -rf "$folder"' EXIT
 cd "$folder"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 export program mpirun
@@ -25,7 +26,59 @@ while case $1 in --*) ;; *) false ;; esac; do shift; done
 exec "$mpirun" -n "$SLURM_NTASKS" "$@"
 END
 chmod +x sasbench bin/srun
-command -v srun >/dev/null || { PATH=$PATH:$folder/bin; echo "no Slurm: a stand-in for srun"; }
+
+# Slurm of this machine alone, at ports of its own; false where it does not start.
+slurm_begin()
+{
+    [ "$(id -u)" -eq 0 ] && command -v slurmctld slurmd munged >/dev/null || return 1
+    host=$(hostname -s)
+    cat >slurm.conf <<END
+ClusterName=one
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=46817
+SlurmdPort=46818
+SlurmUser=root
+AuthInfo=socket=$folder/munge
+StateSaveLocation=$folder/state
+SlurmdSpoolDir=$folder/spool
+SlurmctldPidFile=$folder/controller.pid
+SlurmdPidFile=$folder/node.pid
+SlurmctldLogFile=$folder/controller.log
+SlurmdLogFile=$folder/node.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SlurmdParameters=config_overrides
+NodeName=$host NodeAddr=127.0.0.1 CPUs=4
+PartitionName=all Nodes=$host Default=YES
+END
+    export SLURM_CONF=$folder/slurm.conf
+    chmod 755 .
+    (umask 077 && head -c 1024 /dev/urandom >key)
+    munged --force --socket="$folder/munge" --key-file="$folder/key" --pid-file="$folder/munge.pid" \
+        --log-file="$folder/munge.log" --seed-file="$folder/seed" && slurmctld && slurmd || return 1
+    for second in 1 2 3 4 5 6 7 8 9 10; do
+        sleep 1
+        ! sinfo -h -o %T | grep -q idle || return 0
+    done
+    return 1
+}
+
+# batch SCRIPT NAME=VALUE ...: by Slurm, or with the variables that it would set.
+batch()
+{
+    job=$1
+    shift
+    if [ -n "$slurm" ]; then
+        sbatch --wait "$job" >log 2>&1 || { cat log slurm-*.out; exit 1; }
+    else
+        env "$@" sh -e "$job" >log 2>&1 || { cat log; exit 1; }
+    fi
+}
+
+slurm=yes
+slurm_begin >slurm.log 2>&1 || { slurm='' PATH=$folder/bin:$PATH; echo "no Slurm that starts: a stand-in for srun"; }
 
 cells() { grep -v '^#' "$1/measurements.csv" | cut -d, -f1-4 | sort; }
 
@@ -54,9 +107,8 @@ if script 1 parallel parallel; then
     check 1
 fi
 if script 2 SBATCH sh; then
-    export SLURM_CPUS_PER_TASK=1
-    for SLURM_ARRAY_TASK_ID in 1 2 3 4; do
-        SLURM_ARRAY_TASK_ID=$SLURM_ARRAY_TASK_ID sh -e script >log 2>&1 || { cat log; exit 1; }
+    for task in ${slurm:-1 2 3 4}; do
+        batch script SLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID="$task"
     done
     ./sasbench merge parts/* -o results/sweep >/dev/null
     check 2
@@ -66,7 +118,7 @@ if script 3 'mpirun -n' "${mpirun:-mpirun that this build has}"; then
     check 3
 fi
 if script 4 srun "${mpirun:-mpirun that this build has}"; then
-    SLURM_CPUS_PER_TASK=1 SLURM_NTASKS=2 sh -e script >log 2>&1 || { cat log; exit 1; }
+    batch script SLURM_CPUS_PER_TASK=1 SLURM_NTASKS=2
     check 4
 fi
 exit $skipped
