@@ -47,7 +47,7 @@ static pid_t ranks_start(int count, const char *const *arguments, FILE *sink)
 /* The n-th child of a process, by its number; 0: none. */
 static pid_t child_of(pid_t parent, int n)
 {
-    pid_t found[64];
+    pid_t found[64] = {0};
     int count = 0;
     DIR *open = opendir("/proc");
     assert_non_null(open);
