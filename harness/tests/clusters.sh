@@ -4,7 +4,7 @@
 # stand-in for srun begins ranks by mpirun. Usage: clusters.sh PROGRAM SOURCE_ROOT MPIRUN (empty: built without MPI). Exit
 # status 1 where a script fails, 77 where a tool is missing.
 set -eu
-program=$1 root=$2 mpirun=$3 skipped=0
+program=$(readlink -f "$1") root=$2 mpirun=$3 skipped=0
 folder=$(mktemp -d)
 trap 'for pid in "$folder"/*.pid; do [ ! -f "$pid" ] || kill "$(cat "$pid")" || :; done; rm -rf "$folder"' EXIT
 cd "$folder"
