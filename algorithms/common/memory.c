@@ -91,6 +91,14 @@ void *memory_sparse(size_t bytes)
     return memory + page;
 }
 
+void memory_sparse_drop(void *memory, size_t begin, size_t end)
+{
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), first = (begin + page - 1) / page * page;
+    const size_t last = end / page * page;
+    if (first < last)
+        madvise((char *)memory + first, last - first, MADV_DONTNEED);
+}
+
 void memory_sparse_free(void *memory)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);

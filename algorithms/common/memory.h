@@ -22,6 +22,8 @@ void *memory_columns(size_t alignment, size_t bytes);
 /* Zeroed memory, at a page; only pages that are written take room. Freed by memory_sparse_free, which accepts NULL.
    NULL where the address space is too small. */
 void *memory_sparse(size_t bytes);
+/* Give up the room of bytes [begin, end), whose values are then lost, but for pages that have others as well. */
+void memory_sparse_drop(void *memory, size_t begin, size_t end);
 void memory_sparse_free(void *memory);
 
 /* Memory and FFT plans of a plan, released together. A zeroed struct owns nothing. */

@@ -33,71 +33,92 @@ static enum status tile_parse(const char *text, struct tiles *tiles)
     return STATUS_OK;
 }
 
-/* Read into memory of the precision. Errors: STATUS_UNSUPPORTED where the pings do not fit it as they are: each tile
-   would have a power of two of its own. */
-static enum status samples_convert(const struct echoes *from, const bool *read, enum precision precision, void *to)
+/* Echoes of a scene: in memory, or of a recording those pings that were read. */
+struct held {
+    struct echoes echoes;
+    bool *has, *wanted; /* [pings] */
+    int column;         /* first one of the stretch that they were read for */
+    double largest;     /* of what was read */
+};
+
+static enum status range_check(double largest, enum precision precision)
 {
-    const struct acquisition *a = from->acquisition;
-    const size_t each = (size_t)a->receivers * (size_t)a->samples;
     const double reach = precision == PRECISION_DOUBLE ? 0x1p400 : 0x1p40;
-    double largest = 0;
-    for (size_t p = 0; p < (size_t)a->pings; p++)
-        for (size_t i = p * each; read[p] && i < (p + 1) * each; i++) {
-            const double complex z = ((const double complex *)from->samples)[i];
-            largest = fmax(largest, fmax(fabs(creal(z)), fabs(cimag(z))));
-            if (precision == PRECISION_DOUBLE)
-                ((double complex *)to)[i] = z;
-            else
-                ((float complex *)to)[i] = (float complex)z;
-        }
     return !(largest > 0) || (largest >= 1 / reach && largest <= reach)
                ? STATUS_OK
                : status_set(STATUS_UNSUPPORTED, "image: --tile: the largest sample is %.3g, must be from %.3g to %.3g",
                             largest, 1 / reach, reach);
 }
 
-/* The pings that a plan reads, alone. */
-static enum status pings_read(const struct scene *scene, const struct imaging *imaging, const struct problem *problem,
-                              struct echoes *echoes)
+/* Errors: STATUS_UNSUPPORTED where samples do not fit the precision as they are: the whole image would be of samples
+   divided by a power of two. */
+static enum status held_make(const struct scene *scene, enum precision precision, struct held *held)
 {
     const struct acquisition *a = &scene->acquisition;
-    const size_t size =
-        size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, precision_size(problem->precision));
-    struct acquisition again;
+    const size_t pings = (size_t)a->pings;
     struct echoes from;
-    bool *read = calloc((size_t)a->pings, sizeof *read);
-    void *samples = size > 0 ? memory_sparse(size) : NULL;
-    enum status status = STATUS_OK;
-    if (!read || !samples)
-        status = status_set(STATUS_FAILED, "%s: out of memory for a tile's echoes", scene->recording);
-    if (status == STATUS_OK) {
-        imaging_reads(imaging, problem, read);
-        const struct pings pings = {a->pings, read};
-        status = echo_file_read_pings(scene->recording, &pings, &again, &from);
+    *held = (struct held){.column = -1};
+    if (!scene->recording.path) {
+        enum status status = scene_echoes(scene, &from);
+        if (status == STATUS_OK)
+            status = echoes_convert(&from, precision, &held->echoes);
+        echoes_free(&from);
+        return status;
     }
-    if (status == STATUS_OK) {
-        if (again.pings == a->pings && again.receivers == a->receivers && again.samples == a->samples)
-            status = samples_convert(&from, read, problem->precision, samples);
-        else
-            status = status_set(STATUS_INVALID, "%s: has been replaced meanwhile", scene->recording);
-        memory_sparse_free((void *)from.samples);
-        acquisition_free(&again);
-    }
-    free(read);
+    const enum status status = range_check(scene->recording.largest, precision);
     if (status != STATUS_OK)
-        memory_sparse_free(samples);
+        return status;
+    const size_t size = size_product(pings, (size_t)a->receivers, (size_t)a->samples, precision_size(precision));
+    held->has = calloc(pings, sizeof *held->has);
+    held->wanted = calloc(pings, sizeof *held->wanted);
+    held->echoes = (struct echoes){a, precision, size > 0 ? memory_sparse(size) : NULL, 0};
+    return held->has && held->wanted && held->echoes.samples
+               ? STATUS_OK
+               : status_set(STATUS_FAILED, "%s: out of memory for a tile's echoes", scene->recording.path);
+}
+
+static void held_free(struct held *held)
+{
+    if (!held->has)
+        echoes_free(&held->echoes);
     else
-        *echoes = (struct echoes){a, problem->precision, samples, 0};
+        memory_sparse_free((void *)held->echoes.samples);
+    free(held->has);
+    free(held->wanted);
+}
+
+/* Read the pings that a plan needs and that are not held; of another stretch, only those that this plan needs are kept.
+ */
+static enum status held_read(const struct scene *scene, const struct imaging *imaging, const struct problem *problem,
+                             struct held *held)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const size_t each = (size_t)a->receivers * (size_t)a->samples, bytes = each * precision_size(problem->precision);
+    const struct pings pings = {
+        a->pings,      held->wanted, problem->precision, scene->recording.exponent, each, (void *)held->echoes.samples,
+        &held->largest};
+    imaging_reads(imaging, problem, held->wanted);
+    for (size_t p = 0; p < (size_t)a->pings; p++) {
+        if (held->has[p] && !held->wanted[p] && held->column != problem->window->column) {
+            memory_sparse_drop(pings.samples, p * bytes, (p + 1) * bytes);
+            held->has[p] = false;
+        }
+        held->wanted[p] &= !held->has[p];
+    }
+    held->column = problem->window->column;
+    enum status status = echo_file_read_pings(scene->recording.path, a, &pings);
+    for (size_t p = 0; p < (size_t)a->pings; p++)
+        held->has[p] |= held->wanted[p];
+    if (status == STATUS_OK && held->largest > scene->recording.largest)
+        status = range_check(held->largest, problem->precision);
     return status;
 }
 
-/* `whole`: the echoes of a scene that has them in memory. */
-static enum status tile_form(const struct spec *spec, const struct scene *scene, const struct echoes *whole,
-                             struct tiles *tiles, int number)
+static enum status tile_form(const struct spec *spec, const struct scene *scene, struct held *held, struct tiles *tiles,
+                             int number)
 {
     const struct pixel_window window = tiles_window(tiles, number);
     struct problem problem = problem_make(&scene->acquisition, 1, &tiles->grid, spec->precision);
-    struct echoes echoes = *whole;
     struct imaging imaging;
     struct image image;
     struct stages stages;
@@ -105,16 +126,13 @@ static enum status tile_form(const struct spec *spec, const struct scene *scene,
     enum status status = imaging_open(spec, &problem, &imaging);
     if (status != STATUS_OK)
         return status;
-    if (scene->recording)
-        status = pings_read(scene, &imaging, &problem, &echoes);
+    if (scene->recording.path)
+        status = held_read(scene, &imaging, &problem, held);
     stages_begin(&stages);
-    if (status == STATUS_OK) {
-        status = imaging_execute(&imaging, &echoes, &stages);
-        if (scene->recording)
-            memory_sparse_free((void *)echoes.samples);
-    }
     if (status == STATUS_OK)
-        status = imaging_finish(&imaging, &echoes, &image);
+        status = imaging_execute(&imaging, &held->echoes, &stages);
+    if (status == STATUS_OK)
+        status = imaging_finish(&imaging, &held->echoes, &image);
     if (status == STATUS_OK) {
         status = image.precision == tiles->precision
                      ? tiles_write(tiles, number, image.pixels[0])
@@ -191,20 +209,16 @@ static enum status tiles_form(const struct task *task, const struct shard *shard
 {
     const struct spec *spec = &task->specs[0];
     const int count = tiles_count(tiles), before = tiles_done(tiles);
-    struct echoes from = {0}, echoes = {0};
-    const bool in_memory = before < count && !scene->recording;
-    enum status status = in_memory ? scene_echoes(scene, &from) : STATUS_OK;
-    if (status == STATUS_OK && in_memory)
-        status = echoes_convert(&from, spec->precision, &echoes);
-    echoes_free(&from);
+    struct held held = {.has = NULL};
+    enum status status = before < count ? held_make(scene, spec->precision, &held) : STATUS_OK;
     if (before > 0 && ranks_number() == 0)
         printf("%s: %d of %d tiles were done\n", tiles->path, before, count);
     for (int n = -1; status == STATUS_OK && (n = tile_next(tiles, shard, n)) >= 0;) {
         progress_line(false, "%s: tile %d of %d by %s", scene->name, n + 1, count, spec->algorithm->name);
-        status = tile_form(spec, scene, &echoes, tiles, n);
+        status = tile_form(spec, scene, &held, tiles, n);
     }
     progress_line_clear();
-    echoes_free(&echoes);
+    held_free(&held);
     return status;
 }
 

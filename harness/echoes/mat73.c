@@ -6,6 +6,7 @@
 
 #include <hdf5.h>
 #include <stdlib.h>
+#include <string.h>
 #include <zlib.h>
 
 enum { FILTERS_MOST = 3 };
@@ -168,45 +169,49 @@ enum status mat73_check(const char *path, const struct stored *stored)
     return found >= set.needed ? STATUS_OK : storage_refuse(path, stored->name, "", found, set.needed);
 }
 
-/* Complex numbers, or real ones, as doubles, which are then spread. */
-static bool slab_read(const struct data_set *set, hid_t space, hid_t room, size_t count, double complex *values)
+/* Complex numbers, or real ones, which are then spread. */
+static bool slab_read(const struct data_set *set, hid_t space, hid_t room, size_t count, enum precision precision,
+                      void *values)
 {
+    const size_t size = precision_size(precision), part = size / 2;
+    const hid_t part_type = precision == PRECISION_DOUBLE ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
     if (H5Tget_class(set->type) != H5T_COMPOUND) {
-        double *reals = (double *)values;
-        if (H5Dread(set->id, H5T_NATIVE_DOUBLE, room, space, H5P_DEFAULT, reals) < 0)
+        if (H5Dread(set->id, part_type, room, space, H5P_DEFAULT, values) < 0)
             return false;
-        for (size_t k = count; k-- > 0;)
-            values[k] = reals[k];
+        for (size_t k = count; k-- > 0;) {
+            memmove((char *)values + k * size, (char *)values + k * part, part);
+            memset((char *)values + k * size + part, 0, part);
+        }
         return true;
     }
-    const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof *values);
-    H5Tinsert(type, "real", 0, H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "imag", sizeof(double), H5T_NATIVE_DOUBLE);
+    const hid_t type = H5Tcreate(H5T_COMPOUND, size);
+    H5Tinsert(type, "real", 0, part_type);
+    H5Tinsert(type, "imag", part, part_type);
     const bool read = H5Dread(set->id, type, room, space, H5P_DEFAULT, values) >= 0;
     H5Tclose(type);
     return read;
 }
 
-bool mat73_read_pings(const char *path, const char *name, const struct pings *pings, size_t first, size_t end,
-                      size_t each, double complex *values)
+bool mat73_read_pings(const char *path, const char *name, const struct pings *pings, const struct ping_run *run,
+                      enum precision precision, void *values)
 {
     static struct data_set set;
-    const struct stored stored = {name, each * (size_t)pings->count, true, false};
+    const struct stored stored = {name, run->each * (size_t)pings->count, true, false};
     if (!set.id && !set_open(path, &stored, &set))
         return false;
-    hsize_t begin[H5S_MAX_RANK] = {0}, count[H5S_MAX_RANK], numbers = (end - first) * each;
+    hsize_t begin[H5S_MAX_RANK] = {0}, count[H5S_MAX_RANK], numbers = (run->end - run->first) * run->each;
     const bool by_ping = set.rank > 0 && set.dims[0] == (hsize_t)pings->count;
     if (!by_ping && pings->count > 1) /* a single ping may have no dimension of its own */
         return false;
     for (int k = 0; k < set.rank; k++)
         count[k] = set.dims[k];
     if (by_ping) {
-        begin[0] = first;
-        count[0] = end - first;
+        begin[0] = run->first;
+        count[0] = run->end - run->first;
     }
     const hid_t space = H5Dget_space(set.id), room = H5Screate_simple(1, &numbers, NULL);
     const bool read = H5Sselect_hyperslab(space, H5S_SELECT_SET, begin, NULL, count, NULL) >= 0
-                      && slab_read(&set, space, room, numbers, values);
+                      && slab_read(&set, space, room, numbers, precision, values);
     H5Sclose(room);
     H5Sclose(space);
     return read;

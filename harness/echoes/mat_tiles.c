@@ -31,7 +31,8 @@ int tiles_count(const struct tiles *tiles)
 
 struct pixel_window tiles_window(const struct tiles *tiles, int number)
 {
-    const int row = number % tiles_deep(tiles) * tiles->rows, column = number / tiles_deep(tiles) * tiles->columns;
+    const int deep = tiles_deep(tiles), row = (deep - 1 - number % deep) * tiles->rows;
+    const int column = number / deep * tiles->columns;
     const int rows = tiles->grid.r_count - row, columns = tiles->grid.x_count - column;
     return (struct pixel_window){row, rows < tiles->rows ? rows : tiles->rows, column,
                                  columns < tiles->columns ? columns : tiles->columns};
@@ -250,7 +251,7 @@ enum status tiles_write(struct tiles *tiles, int number, const void *pixels)
 /* The tiles that a journal claims, as far as the file has their numbers; of another writer's, those not done yet. */
 static void claims_verify(struct tiles *tiles, const char *line, bool other)
 {
-    char *numbers = malloc(tile_bytes(tiles, 0)); /* none is larger */
+    char *numbers = malloc((size_t)tiles->rows * (size_t)tiles->columns * precision_size(tiles->precision));
     for (const char *end; numbers && (end = strchr(line, '\n')); line = end + 1) {
         unsigned long sum;
         const int n = journal_claim(line, end, &sum);

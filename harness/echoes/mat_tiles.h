@@ -24,7 +24,7 @@ struct tiles {
 
 int tiles_count(const struct tiles *tiles);
 int tiles_done(const struct tiles *tiles);
-/* Tiles of a stretch of columns follow one another. */
+/* Tiles of a stretch of columns follow one another, the farthest first, which mostly needs the pings of all. */
 struct pixel_window tiles_window(const struct tiles *tiles, int number);
 
 /* Create the file, or continue one: the tiles of its journal are verified by their checksums, and are done. `settings`:

@@ -206,51 +206,44 @@ static enum status check_echo_values(const char *path, const struct variable *v)
     return STATUS_OK;
 }
 
-/* Is ping p of the samples there? */
-static bool ping_read(const struct pings *pings, size_t p)
+enum status samples_refuse(const char *path, const size_t dims[3], size_t i, double complex z)
 {
-    return !pings || (p < (size_t)pings->count && pings->read[p]);
+    const size_t n = i % dims[0], record = i / dims[0];
+    return status_set(STATUS_INVALID, "%s: variable `samples` at (%zu, %zu, %zu) is %g%+gi; finite numbers are needed",
+                      path, n + 1, record % dims[1] + 1, record / dims[1] + 1, creal(z), cimag(z));
 }
 
-static enum status check_samples(const char *path, const struct pings *pings, const struct variable *samples)
+/* `samples` without values: they are read later. */
+static size_t samples_count(const struct variable *samples)
 {
-    const size_t each = samples->dims[0] * samples->dims[1];
-    for (size_t i = 0; i < variable_count(samples); i++) {
-        if (!ping_read(pings, i / each)) {
-            i += each - 1;
-            continue;
-        }
+    return samples->values ? variable_count(samples) : 0;
+}
+
+static enum status check_samples(const char *path, const struct variable *samples)
+{
+    for (size_t i = 0; i < samples_count(samples); i++) {
         double complex z = samples->values[i];
-        if (!isfinite(creal(z)) || !isfinite(cimag(z))) {
-            size_t n = i % samples->dims[0], record = i / samples->dims[0];
-            return status_set(STATUS_INVALID,
-                              "%s: variable `samples` at (%zu, %zu, %zu) is %g%+gi; finite numbers are needed", path,
-                              n + 1, record % samples->dims[1] + 1, record / samples->dims[1] + 1, creal(z), cimag(z));
-        }
+        if (!isfinite(creal(z)) || !isfinite(cimag(z)))
+            return samples_refuse(path, samples->dims, i, z);
     }
     return STATUS_OK;
 }
 
 /* Compression divides by the pulse's energy. A pulse so small or large that its squares leave the precision is brought
    to 1 by a power of two, and the samples by the same; the compressed echoes stay as they are. */
-static enum status normalise_pulse(const char *path, const struct pings *pings, const struct variable *v)
+static enum status normalise_pulse(const char *path, const struct variable *v, int *exponent)
 {
-    const size_t each = v[SAMPLES].dims[0] * v[SAMPLES].dims[1];
     const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};
     size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
     const double largest = largest_part(v[PULSE].values, pulse_count);
-    int exponent;
+    *exponent = 0;
     if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20)) {
         return STATUS_OK;
     }
-    frexp(largest, &exponent);
+    frexp(largest, exponent);
     for (int k = 0; k < 2; k++) {
-        for (size_t i = 0; i < variable_count(both[k]); i++) {
-            if (k == 1 && !ping_read(pings, i / each)) {
-                i += each - 1;
-                continue;
-            }
-            double re = ldexp(creal(both[k]->values[i]), -exponent), im = ldexp(cimag(both[k]->values[i]), -exponent);
+        for (size_t i = 0; i < samples_count(both[k]); i++) {
+            double re = ldexp(creal(both[k]->values[i]), -*exponent), im = ldexp(cimag(both[k]->values[i]), -*exponent);
             if (k == 1 && (!isfinite(re) || !isfinite(im))) {
                 return status_set(STATUS_INVALID,
                                   "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio "
@@ -305,8 +298,9 @@ static enum status acquisition_fill(const char *path, const struct variable *v, 
     return acquisition_check(a, path);
 }
 
-enum status echo_file_read_pings(const char *path, const struct pings *pings, struct acquisition *acquisition,
-                                 struct echoes *echoes)
+/* `pings` NULL: all samples; else none. */
+static enum status file_read(const char *path, const struct pings *pings, struct acquisition *acquisition,
+                             struct echoes *echoes, int *exponent)
 {
     *acquisition = (struct acquisition){0};
     *echoes = (struct echoes){0};
@@ -326,13 +320,13 @@ enum status echo_file_read_pings(const char *path, const struct pings *pings, st
         status = check_echo_shapes(path, variables);
     }
     if (status == STATUS_OK) {
-        status = check_samples(path, pings, &variables[SAMPLES]);
+        status = check_samples(path, &variables[SAMPLES]);
     }
     if (status == STATUS_OK) {
         status = check_area(path, variables);
     }
     if (status == STATUS_OK) {
-        status = normalise_pulse(path, pings, variables);
+        status = normalise_pulse(path, variables, exponent);
     }
     if (status == STATUS_OK) {
         status = acquisition_fill(path, variables, acquisition);
@@ -360,7 +354,26 @@ enum status echo_file_read_pings(const char *path, const struct pings *pings, st
 
 enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes)
 {
-    return echo_file_read_pings(path, NULL, acquisition, echoes);
+    int exponent;
+    return file_read(path, NULL, acquisition, echoes, &exponent);
+}
+
+enum status echo_file_open(const char *path, struct acquisition *acquisition, int *exponent)
+{
+    struct echoes none;
+    return file_read(path, &(struct pings){.count = 0}, acquisition, &none, exponent);
+}
+
+enum status echo_file_read_pings(const char *path, const struct acquisition *a, const struct pings *pings)
+{
+    struct wanted wanted = echo_variables[SAMPLES];
+    struct variable samples;
+    wanted.pings = pings;
+    const enum status status = variables_read(path, &wanted, 1, &samples);
+    if (status != STATUS_OK)
+        return status;
+    return samples.dims[0] == (size_t)a->samples ? STATUS_OK
+                                                 : status_set(STATUS_INVALID, "%s: has been replaced meanwhile", path);
 }
 
 enum status echo_file_is(const char *path, bool *is)

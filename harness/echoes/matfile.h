@@ -9,15 +9,20 @@
    Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
 enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes);
 
-/* The pings to read, of `count`; 0: none, whatever their number. */
+/* Read all but the samples, and do not measure noise. *exponent: of the power of two that the pulse was divided by. */
+enum status echo_file_open(const char *path, struct acquisition *acquisition, int *exponent);
+/* The pings to read, of `count` (0: none, whatever their number), and where to. */
 struct pings {
     int count;
     const bool *read;
+    enum precision precision;
+    int exponent;    /* samples are divided by 2^exponent */
+    size_t each;     /* numbers of one */
+    void *samples;   /* complex [count][each] of the precision; other pings are left as they are */
+    double *largest; /* raised to the largest magnitude of a part, in double */
 };
-/* Read some pings, alone where the file is of version 7.3; the samples of the others are 0. Their noise is not
-   measured. echoes->samples is freed by memory_sparse_free: samples that are not read take no room. */
-enum status echo_file_read_pings(const char *path, const struct pings *pings, struct acquisition *acquisition,
-                                 struct echoes *echoes);
+/* Read some pings of a file that was opened, alone where the file is of version 7.3. */
+enum status echo_file_read_pings(const char *path, const struct acquisition *acquisition, const struct pings *pings);
 
 /* What a simulator knows beside the echoes: the image that the scene asks for, and its point targets. */
 struct echo_notes {

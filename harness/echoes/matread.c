@@ -186,19 +186,23 @@ static bool send_values(mat_complex_split_t parts, enum matio_types type, size_t
 
 /* Some pings alone. In version 5 all has been read, into `parts`. */
 static bool send_pings(const char *path, const struct wanted *wanted, const mat_complex_split_t *parts,
-                       enum matio_types type, size_t count, int descriptor)
+                       enum matio_types type, const struct packet *packet, int descriptor)
 {
     const struct pings *pings = wanted->pings;
-    const size_t each = pings->count > 0 ? count / (size_t)pings->count : 0, most = 1 + (1 << 20) / (each + 1);
-    double complex *values = parts ? NULL : malloc(most * each * sizeof *values);
-    bool sent = parts || values || each == 0;
-    for (size_t first = 0, end = 0; sent && pings_run_next(pings, end, most, &first, &end);) {
-        const size_t size = number_types[type].size;
-        const mat_complex_split_t from = {parts ? (char *)parts->Re + first * each * size : NULL,
-                                          parts && parts->Im ? (char *)parts->Im + first * each * size : NULL};
-        sent = parts ? send_values(from, type, (end - first) * each, descriptor)
-                     : mat73_read_pings(path, wanted->name, pings, first, end, each, values)
-                           && write_fully(descriptor, values, (end - first) * each * sizeof *values);
+    const size_t each = pings->each, most = 1 + (1 << 18) / (each + 1),
+                 bytes = each * precision_size(packet->precision);
+    void *values = parts ? NULL : malloc(most * bytes);
+    bool sent = parts || values || pings->count == 0;
+    struct ping_run run = {0, 0, each};
+    if (pings->count > 0 && variable_count(&packet->variable) != (size_t)pings->count * each)
+        return true; /* the other side refuses it */
+    while (sent && pings_run_next(pings, most, &run)) {
+        const size_t at = run.first * each * number_types[type].size, numbers = (run.end - run.first) * each;
+        const mat_complex_split_t from = {parts ? (char *)parts->Re + at : NULL,
+                                          parts && parts->Im ? (char *)parts->Im + at : NULL};
+        sent = parts ? send_values(from, type, numbers, descriptor)
+                     : mat73_read_pings(path, wanted->name, pings, &run, packet->precision, values)
+                           && write_fully(descriptor, values, (run.end - run.first) * bytes);
     }
     free(values);
     return sent;
@@ -225,6 +229,7 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     struct packet packet;
     memset(&packet, 0, sizeof packet);
     packet.index = index;
+    packet.precision = PRECISION_DOUBLE;
     enum status status = check_claim(path, &wanted[index], matvar, file_size, &packet.variable);
     if (status != STATUS_OK) {
         return status;
@@ -239,8 +244,10 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     }
     mat_complex_split_t parts;
     if (pings && !place->file) {
+        if (packet.variable.is_single)
+            packet.precision = pings->precision;
         return write_fully(descriptor, &packet, sizeof packet)
-                       && send_pings(path, &wanted[index], NULL, MAT_T_DOUBLE, count, descriptor)
+                       && send_pings(path, &wanted[index], NULL, MAT_T_DOUBLE, &packet, descriptor)
                    ? STATUS_OK
                    : status_set(STATUS_INVALID, "%s: variable `%s` cannot be read by pings; %s is needed", path, name,
                                 wanted[index].accepted);
@@ -250,7 +257,7 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
                           name);
     }
     if (!write_fully(descriptor, &packet, sizeof packet)
-        || !(pings ? send_pings(path, &wanted[index], &parts, matvar->data_type, count, descriptor)
+        || !(pings ? send_pings(path, &wanted[index], &parts, matvar->data_type, &packet, descriptor)
                    : send_values(parts, matvar->data_type, count, descriptor))) {
         return status_set(STATUS_FAILED, "%s: nobody reads on", path);
     }

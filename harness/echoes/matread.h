@@ -12,12 +12,13 @@ struct packet {
     enum { END = -1 } index; /* of the wanted variable, or END */
     enum status status;      /* END only */
     struct variable variable;
+    enum precision precision; /* of the numbers that follow */
 };
 
 /* All that the reading process does, until it ends. */
 _Noreturn void variables_send(const char *path, const struct wanted *wanted, int count, size_t file_size,
                               int descriptor);
-/* The next run of pings to read from `from` on, of at most `most`; false: none. */
-bool pings_run_next(const struct pings *pings, size_t from, size_t most, size_t *first, size_t *end);
+/* To the next run of pings to read, of at most `most`, behind the end of *run; false: none. */
+bool pings_run_next(const struct pings *pings, size_t most, struct ping_run *run);
 
 #endif

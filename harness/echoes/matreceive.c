@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,16 +12,22 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "common/memory.h"
-
-bool pings_run_next(const struct pings *pings, size_t from, size_t most, size_t *first, size_t *end)
+bool pings_run_next(const struct pings *pings, size_t most, struct ping_run *run)
 {
     const size_t count = (size_t)pings->count;
-    for (*first = from; *first < count && !pings->read[*first];)
-        ++*first;
-    for (*end = *first; *end < count && pings->read[*end] && *end - *first < most;)
-        ++*end;
-    return *first < *end;
+    for (run->first = run->end; run->first < count && !pings->read[run->first];)
+        run->first++;
+    for (run->end = run->first; run->end < count && pings->read[run->end] && run->end - run->first < most;)
+        run->end++;
+    return run->first < run->end;
+}
+
+static enum status reader_crashed(const char *path)
+{
+    return status_set(STATUS_INVALID,
+                      "%s: is damaged (its reader crashed, or ran out of memory or time); a MATLAB "
+                      "file of version 5 or 7.3 is needed",
+                      path);
 }
 
 static bool read_fully(int descriptor, void *data, size_t size)
@@ -38,24 +45,100 @@ static bool read_fully(int descriptor, void *data, size_t size)
     return true;
 }
 
-/* Into memory as echoes_allocate gives it, so that samples need no copy; of some pings, as memory_sparse does. */
-static bool receive_values(const struct pings *pings, struct variable *variable, int descriptor)
+/* Bits of the magnitude of a part: they are ordered as the magnitudes are, and above all finite ones for others. */
+static uint64_t magnitude_bits(const void *parts, enum precision precision, size_t i)
 {
-    const size_t count = variable_count(variable);
-    if (!pings)
-        return read_fully(descriptor, variable->values, count * sizeof *variable->values);
-    const size_t each = pings->count > 0 ? count / (size_t)pings->count : 0;
-    for (size_t first = 0, end = 0; pings_run_next(pings, end, count, &first, &end);)
-        if (!read_fully(descriptor, variable->values + first * each, (end - first) * each * sizeof *variable->values))
-            return false;
-    return true;
+    uint32_t single;
+    uint64_t both;
+    if (precision == PRECISION_DOUBLE) {
+        memcpy(&both, (const char *)parts + i * sizeof both, sizeof both);
+        return both & INT64_MAX;
+    }
+    memcpy(&single, (const char *)parts + i * sizeof single, sizeof single);
+    return single & INT32_MAX;
 }
 
-static void *values_allocate(const struct pings *pings, size_t size)
+/* The largest magnitude of a part; infinite or NaN where one is. */
+static double largest_of(const void *parts, enum precision precision, size_t count)
 {
-    if (size == 0 || size > PTRDIFF_MAX - 63)
-        return NULL;
-    return pings ? memory_sparse(size) : aligned_alloc(64, (size + 63) / 64 * 64);
+    uint64_t most = 0;
+    float single;
+    double both;
+    for (size_t i = 0; i < count; i++)
+        most = magnitude_bits(parts, precision, i) > most ? magnitude_bits(parts, precision, i) : most;
+    memcpy(&both, &most, sizeof both);
+    memcpy(&single, &(uint32_t){(uint32_t)most}, sizeof single);
+    return precision == PRECISION_DOUBLE ? both : single;
+}
+
+enum { BLOCK = 1 << 14 }; /* numbers received at a time */
+
+/* Numbers that came in a precision, into samples from `at` on. */
+static void block_put(const struct pings *pings, size_t at, const void *block, enum precision precision, size_t count)
+{
+    for (size_t i = 0; i < 2 * count; i++) {
+        const double came = precision == PRECISION_FLOAT ? ((const float *)block)[i] : ((const double *)block)[i];
+        const double part = pings->exponent ? ldexp(came, -pings->exponent) : came;
+        if (pings->precision == PRECISION_FLOAT)
+            ((float *)pings->samples)[2 * at + i] = (float)part;
+        else
+            ((double *)pings->samples)[2 * at + i] = part;
+    }
+}
+
+static enum status not_finite(const char *path, const struct packet *packet, size_t at, const void *block)
+{
+    const size_t *dims = packet->variable.dims;
+    for (;; at++, block = (const char *)block + precision_size(packet->precision)) {
+        const double *both = block;
+        const float *single = block;
+        const double re = packet->precision == PRECISION_FLOAT ? single[0] : both[0];
+        const double im = packet->precision == PRECISION_FLOAT ? single[1] : both[1];
+        if (!isfinite(re) || !isfinite(im))
+            return samples_refuse(path, dims, at, __builtin_complex(re, im));
+    }
+}
+
+/* Some pings, to the place of their own. */
+static enum status receive_pings(const char *path, const struct pings *pings, const struct packet *packet,
+                                 int descriptor)
+{
+    static double block[2 * BLOCK];
+    const size_t count = variable_count(&packet->variable), size = precision_size(packet->precision);
+    struct ping_run run = {0, 0, pings->each};
+    if (pings->count > 0 && count != (size_t)pings->count * pings->each)
+        return status_set(STATUS_INVALID, "%s: has been replaced meanwhile", path);
+    while (pings_run_next(pings, count, &run))
+        for (size_t at = run.first * run.each, end = run.end * run.each, most; at < end; at += most) {
+            most = end - at < BLOCK ? end - at : BLOCK;
+            if (!read_fully(descriptor, block, most * size))
+                return reader_crashed(path);
+            const double largest = largest_of(block, packet->precision, 2 * most);
+            if (!isfinite(largest))
+                return not_finite(path, packet, at, block);
+            block_put(pings, at, block, packet->precision, most);
+            *pings->largest = fmax(*pings->largest, ldexp(largest, -pings->exponent));
+        }
+    return STATUS_OK;
+}
+
+/* As echoes_allocate gives it, so that samples need no copy. */
+static double complex *values_allocate(size_t size)
+{
+    return size == 0 || size > PTRDIFF_MAX - 63 ? NULL : aligned_alloc(64, (size + 63) / 64 * 64);
+}
+
+static enum status receive_variable(const char *path, const struct pings *pings, const struct packet *packet,
+                                    struct variable *variable, int descriptor)
+{
+    *variable = packet->variable;
+    if (pings)
+        return receive_pings(path, pings, packet, descriptor);
+    const size_t size = size_product(variable_count(variable), sizeof(double complex), 1, 1);
+    variable->values = values_allocate(size);
+    if (!variable->values)
+        return status_set(STATUS_FAILED, "%s: out of memory for a variable of %zu bytes", path, size);
+    return read_fully(descriptor, variable->values, size) ? STATUS_OK : reader_crashed(path);
 }
 
 static enum status receive_variables(const char *path, const struct wanted *wanted, int count,
@@ -73,23 +156,13 @@ static enum status receive_variables(const char *path, const struct wanted *want
         if (packet.index < 0 || packet.index >= count) {
             break;
         }
-        const struct pings *pings = wanted[packet.index].pings;
-        struct variable *variable = &variables[packet.index];
-        *variable = packet.variable;
-        variable->is_sparse = pings != NULL;
-        size_t size = size_product(variable_count(variable), sizeof(double complex), 1, 1);
-        variable->values = values_allocate(pings, size);
-        if (!variable->values) {
-            return status_set(STATUS_FAILED, "%s: out of memory for a variable of %zu bytes", path, size);
-        }
-        if (!receive_values(pings, variable, descriptor)) {
-            break;
+        const enum status status =
+            receive_variable(path, wanted[packet.index].pings, &packet, &variables[packet.index], descriptor);
+        if (status != STATUS_OK) {
+            return status;
         }
     }
-    return status_set(STATUS_INVALID,
-                      "%s: is damaged (its reader crashed, or ran out of memory or time); a MATLAB "
-                      "file of version 5 or 7.3 is needed",
-                      path);
+    return reader_crashed(path);
 }
 
 enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables)
@@ -109,6 +182,7 @@ enum status variables_read(const char *path, const struct wanted *wanted, int co
     if (pipe2(ends, O_CLOEXEC) != 0) {
         return status_set(STATUS_FAILED, "%s: no pipe to read it through: %s", path, strerror(errno));
     }
+    fcntl(ends[0], F_SETPIPE_SZ, 1 << 20); /* fewer turns; where refused, it is smaller */
     /* _Fork runs no handlers: LLVM's OpenMP would set itself up anew in the child and leave a file behind. The other
        threads are idle here and hold no locks. */
     pid_t child = _Fork();

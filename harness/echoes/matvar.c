@@ -1,5 +1,4 @@
 /* Variables of MATLAB files once they are read (matvar.h). */
-#include "common/memory.h"
 #include "echoes/matvar.h"
 
 #include <math.h>
@@ -25,7 +24,7 @@ bool variable_is_vector(const struct variable *variable)
 void variables_free(struct variable *variables, int count)
 {
     for (int i = 0; i < count; i++) {
-        (variables[i].is_sparse ? memory_sparse_free : free)(variables[i].values);
+        free(variables[i].values);
     }
 }
 
@@ -65,7 +64,7 @@ enum status variables_check(const char *path, const struct wanted *wanted, int c
 {
     for (int i = 0; i < count; i++) {
         const struct variable *variable = &variables[i];
-        if (!variable->values) {
+        if (variable->dims[0] == 0) {
             if (!wanted[i].is_optional) {
                 return status_set(STATUS_INVALID, "%s: variable `%s` is missing; %s is needed", path, wanted[i].name,
                                   wanted[i].accepted);

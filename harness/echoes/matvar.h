@@ -18,7 +18,7 @@ struct wanted {
     enum kind kind;
     bool is_optional;
     const char *accepted;      /* for messages: "X is needed" */
-    const struct pings *pings; /* NULL: all of it is read; else these pings of [... x P], and the rest is 0 */
+    const struct pings *pings; /* NULL: all of it is read; else these pings of [... x P], to a place of their own */
 };
 
 enum { WANTED_MAX = 20 };
@@ -26,9 +26,8 @@ enum { WANTED_MAX = 20 };
 /* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
 struct variable {
     bool is_complex, is_single; /* of MATLAB's class single */
-    bool is_sparse;             /* some pings were read: from memory_sparse, not for free() */
-    size_t dims[3];             /* trailing dimensions of 1 filled in; never 0 */
-    double complex *values;     /* 64-byte aligned, free(); NULL: not in the file */
+    size_t dims[3];             /* trailing dimensions of 1 filled in; 0: not in the file */
+    double complex *values;     /* 64-byte aligned, free(); NULL: not in the file, or read by pings */
 };
 
 /* Read the wanted variables of a file (count <= WANTED_MAX) into variables[count], freed with variables_free. Other
@@ -38,6 +37,8 @@ enum status variables_read(const char *path, const struct wanted *wanted, int co
 void variables_free(struct variable *variables, int count);
 /* Check a variable by the table of wanted ones: there, real, a scalar. Errors: STATUS_INVALID. */
 enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables);
+/* Refuse number i of samples [dims], which is not finite. */
+enum status samples_refuse(const char *path, const size_t dims[3], size_t i, double complex z);
 /* Check the raster of positions of class single, which is coarser the farther they are from the origin, all in m.
    Errors: STATUS_INVALID where it is more than a fiftieth of a wavelength. */
 enum status positions_check(const char *path, const char *name, const struct variable *positions, double wavelength);
@@ -79,9 +80,13 @@ struct stored {
     size_t count;
     bool is_complex, is_text;
 };
-/* Read the numbers of a data set's pings [first, end), of `each` numbers. In a process that ends soon. */
-bool mat73_read_pings(const char *path, const char *name, const struct pings *pings, size_t first, size_t end,
-                      size_t each, double complex *values);
+/* Read the numbers of a data set's pings [first, end), of `each` numbers, as complex `precision`. In a process that
+   ends soon. */
+struct ping_run {
+    size_t first, end, each;
+};
+bool mat73_read_pings(const char *path, const char *name, const struct pings *pings, const struct ping_run *run,
+                      enum precision precision, void *values);
 /* Are all its numbers in the file, in the element at hand (version 5), in a data set of this file (7.3)? Errors:
    STATUS_INVALID, with the length found and the one needed. */
 enum status mat5_check(const char *path, const struct stored *stored, const struct mat5 *file);

@@ -100,29 +100,31 @@ enum status recorded_fill(struct reading *reading)
 /* Read all but the samples. Measurements on samples use some pings only. */
 static enum status recording_open(const char *path, struct scene *scene)
 {
-    struct acquisition again;
-    struct echoes echoes;
+    struct acquisition *a = &scene->acquisition;
+    struct recording_file *recording = &scene->recording;
     struct stat file;
-    struct pings pings = {0, NULL};
-    enum status status = echo_file_read_pings(path, &pings, &scene->acquisition, &echoes);
+    enum status status = echo_file_open(path, a, &recording->exponent);
     if (status != STATUS_OK)
         return status;
-    memory_sparse_free((void *)echoes.samples);
-    bool *read = calloc((size_t)scene->acquisition.pings, sizeof *read);
-    scene->recording = strdup(path);
-    if (!read || !scene->recording || stat(path, &file) != 0) {
-        free(read);
-        return status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
-    }
-    noise_pings(&scene->acquisition, read);
-    pings = (struct pings){scene->acquisition.pings, read};
-    status = echo_file_read_pings(path, &pings, &again, &echoes);
+    const size_t each = (size_t)a->receivers * (size_t)a->samples,
+                 size = size_product((size_t)a->pings, each, sizeof(double complex), 1);
+    bool *read = calloc((size_t)a->pings, sizeof *read);
+    void *samples = size > 0 ? memory_sparse(size) : NULL;
+    recording->path = strdup(path);
+    if (!read || !samples || !recording->path || stat(path, &file) != 0)
+        status = status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
     if (status == STATUS_OK) {
-        status = noise_measure(&echoes, &scene->acquisition.noise);
-        memory_sparse_free((void *)echoes.samples);
-        acquisition_free(&again);
+        noise_pings(a, read);
+        status = echo_file_read_pings(
+            path, a,
+            &(struct pings){a->pings, read, PRECISION_DOUBLE, recording->exponent, each, samples, &recording->largest});
     }
+    if (status == STATUS_OK)
+        status = noise_measure(&(struct echoes){a, PRECISION_DOUBLE, samples, 0}, &a->noise);
+    memory_sparse_free(samples);
     free(read);
+    if (status != STATUS_OK)
+        return status;
     const long long told[] = {file.st_size, file.st_mtim.tv_sec, file.st_mtim.tv_nsec};
     hash_add(&scene->hash, told, sizeof told);
     return status;

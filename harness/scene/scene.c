@@ -100,7 +100,7 @@ void scene_free(struct scene *scene)
 {
     acquisition_free(&scene->acquisition);
     free(scene->recorded);
-    free(scene->recording);
+    free(scene->recording.path);
     if (scene->flown) {
         acquisition_free(scene->flown);
         free(scene->flown);

@@ -25,6 +25,13 @@ struct beam {
     bool per_frequency; /* F = fc + f_tau instead of F = fc (lambda = c/F) */
 };
 
+/* Samples that stay in their file. */
+struct recording_file {
+    char *path;     /* NULL: they do not */
+    int exponent;   /* of the power of two that they are divided by */
+    double largest; /* magnitude of a part, of some pings */
+};
+
 /* Freed with scene_free. */
 struct scene {
     char *name;        /* without extension: the path below scenes/, or the name of a file elsewhere */
@@ -33,11 +40,11 @@ struct scene {
     char *description; /* one line, from the file */
     uint64_t hash;     /* FNV-1a of the content after @include: the same content has the same hash */
     struct acquisition acquisition;
-    struct acquisition *flown;  /* the platform's true motion; NULL: that of `acquisition`, which the imager uses */
-    double complex *recorded;   /* [pings][receivers][samples] of an echo file; NULL: the echoes are simulated */
-    char *recording;            /* the echo file, if its samples stay in it; else NULL */
-    enum pulse_kind pulse_kind; /* flat: the echoes are compressed */
-    double pulse_duration;      /* s; lfm and lfm_time */
+    struct acquisition *flown; /* the platform's true motion; NULL: that of `acquisition`, which the imager uses */
+    double complex *recorded;  /* [pings][receivers][samples] of an echo file; NULL: the echoes are simulated */
+    struct recording_file recording; /* the echo file, if its samples stay in it */
+    enum pulse_kind pulse_kind;      /* flat: the echoes are compressed */
+    double pulse_duration;           /* s; lfm and lfm_time */
     struct beam beam;
     int point_count;        /* the first targets are points: metrics measure these */
     int target_count;       /* points, then all scatterers of the fields, drawn from their seeds */

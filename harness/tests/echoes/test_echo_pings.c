@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/memory.h"
 #include "tests/echoes/mat_fixture.h"
 
 static void some_pings_are_those_of_the_whole(void **state)
@@ -11,28 +10,43 @@ static void some_pings_are_those_of_the_whole(void **state)
     static const bool chosen[][P] = {{true, true, true}, {false, true, false}, {true, false, true}, {false}};
     static const int16_t integers[N * M * P] = {-3, 4, 5, 7, -11, 2, 6, 8, 1, 30000};
     const enum mat_ft versions[] = {MAT_FT_MAT5, MAT_FT_MAT73};
-    for (int n = 0; n < 8; n++) {
-        const bool other = n / 4 == 1;
-        mat_t *mat = file_begin(versions[n % 2], n / 2 % 2 == 1, other ? "samples" : "");
+    static const float floats[N * M * P] = {1e-3f, -2, 3, 4e5f, 5, 6, 7, 8, 9, 10}, imaginary[N * M * P] = {0, 1, -1};
+    static const double pulse[K] = {1e100, 2e99};
+    const struct mat_values others[] = {
+        {"samples", MAT_C_INT16, MAT_T_INT16, {N, M, P}, integers, NULL},
+        {"samples", MAT_C_SINGLE, MAT_T_SINGLE, {N, M, P}, floats, imaginary},
+        {"samples", MAT_C_SINGLE, MAT_T_SINGLE, {N, M, P}, floats, NULL},
+        {"pulse", MAT_C_DOUBLE, MAT_T_DOUBLE, {K, 1, 1}, pulse, pulse},
+    };
+    for (int n = 0; n < 4 * (1 + (int)(sizeof others / sizeof *others)); n++) {
+        const struct mat_values *other = n < 4 ? NULL : &others[n / 4 - 1];
+        mat_t *mat = file_begin(versions[n % 2], n / 2 % 2 == 1, other ? other->name : "");
         if (other)
-            variable_add(mat, &(struct mat_values){"samples", MAT_C_INT16, MAT_T_INT16, {N, M, P}, integers, NULL},
-                         n / 2 % 2 == 1);
+            variable_add(mat, other, n / 2 % 2 == 1);
         Mat_Close(mat);
         struct acquisition a, again;
-        struct echoes whole, part;
+        struct echoes whole;
+        int exponent;
         assert_ok(echo_file_read(path, &a, &whole));
-        for (size_t k = 0; k < sizeof chosen / sizeof *chosen; k++) {
-            const struct pings pings = {P, chosen[k]};
-            assert_ok(echo_file_read_pings(path, &pings, &again, &part));
-            assert_true(again.pings == P && again.receivers == M && again.samples == N && again.fs == a.fs);
+        assert_ok(echo_file_open(path, &again, &exponent));
+        assert_true(again.pings == P && again.receivers == M && again.samples == N && again.fs == a.fs);
+        for (size_t k = 0; k < 2 * (sizeof chosen / sizeof *chosen); k++) {
+            const bool *read = chosen[k / 2], single = k % 2;
+            float complex singles[N * M * P] = {0};
+            double complex doubles[N * M * P] = {0};
+            double largest = 0, most = 0;
+            const struct pings pings = {P,        read,  single ? PRECISION_FLOAT : PRECISION_DOUBLE,
+                                        exponent, N * M, single ? (void *)singles : doubles,
+                                        &largest};
+            assert_ok(echo_file_read_pings(path, &again, &pings));
             for (size_t i = 0; i < N * M * P; i++) {
-                const double complex wanted = ((const double complex *)whole.samples)[i];
-                const double complex found = ((const double complex *)part.samples)[i];
-                assert_true(found == (chosen[k][i / (N * M)] ? wanted : 0));
+                const double complex wanted = read[i / (N * M)] ? ((const double complex *)whole.samples)[i] : 0;
+                assert_true(single ? singles[i] == (float complex)wanted : doubles[i] == wanted);
+                most = fmax(most, fmax(fabs(creal(wanted)), fabs(cimag(wanted))));
             }
-            memory_sparse_free((void *)part.samples);
-            acquisition_free(&again);
+            assert_true(largest == most);
         }
+        acquisition_free(&again);
         echoes_free(&whole);
         acquisition_free(&a);
     }
@@ -43,10 +57,9 @@ static void none_are_the_geometry_alone(void **state)
     (void)state;
     Mat_Close(file_begin(MAT_FT_MAT73, false, ""));
     struct acquisition a;
-    struct echoes echoes;
-    assert_ok(echo_file_read_pings(path, &(struct pings){0, NULL}, &a, &echoes));
-    assert_true(a.pings == P && a.receivers == M && a.samples == N);
-    memory_sparse_free((void *)echoes.samples);
+    int exponent;
+    assert_ok(echo_file_open(path, &a, &exponent));
+    assert_true(a.pings == P && a.receivers == M && a.samples == N && exponent == 0);
     acquisition_free(&a);
 }
 
