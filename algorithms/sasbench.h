@@ -105,14 +105,14 @@ struct sas_problem {
    number is ping * receivers + receiver; a pixel's counts row by row, through one patch after the other. */
 struct sas_host {
     uint32_t size, abi;
-    /* Does a pair count? Its exact delay, and where its record is read, go to *delay_s and *q, whether it does or not. */
+    /* Does a pair count? Its exact delay, and where its record is read, go to *delay_s and *q in either case. */
     int (*pair)(const struct sas_problem *problem, int32_t record, int64_t pixel, double *delay_s, double *q);
     /* The pixel's place in the track's axes, x, y = r, z = 0. */
     void (*place)(const struct sas_problem *problem, int64_t pixel, double place_m[3]);
     /* The number of pairs that count. */
     double (*pairs)(const struct sas_problem *problem);
-    /* The record, compressed, or as it is where the echoes are compressed, into double [samples][2], in either precision.
-       `thread` is 0 to threads - 1: each has scratch memory of its own. */
+    /* The record, compressed, or as it is where the echoes are compressed, into double [samples][2] in either
+       precision. `thread` is 0 to threads - 1: each has scratch memory of its own. */
     void (*compress)(const struct sas_problem *problem, int thread, const void *samples, int32_t record, void *row);
     /* FLOPs of compressing all records; 0 where they are compressed. */
     double (*compress_flops)(const struct sas_problem *problem);

@@ -365,15 +365,9 @@ static void odd_tracks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(independent_numbers),
-        cmocka_unit_test(short_swath),
-        cmocka_unit_test(recurrences),
-        cmocka_unit_test(long_swath),
-        cmocka_unit_test(block_counts),
-        cmocka_unit_test(ghosts),
-        cmocka_unit_test(one_receiver),
-        cmocka_unit_test(odd_tracks),
-        cmocka_unit_test(columns),
+        cmocka_unit_test(independent_numbers), cmocka_unit_test(short_swath),  cmocka_unit_test(recurrences),
+        cmocka_unit_test(long_swath),          cmocka_unit_test(block_counts), cmocka_unit_test(ghosts),
+        cmocka_unit_test(one_receiver),        cmocka_unit_test(odd_tracks),   cmocka_unit_test(columns),
     };
     return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
 }

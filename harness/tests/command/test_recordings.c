@@ -289,9 +289,8 @@ static void content_tells_scenes_apart(void **state)
         hashes[k] = scene.hash;
         const struct echoes echoes = {&scene.acquisition, PRECISION_DOUBLE, scene.recorded, 0};
         scene.recorded[1000] += k * 1e-12;
-        assert_int_equal(
-            echo_file_write(path_in("copy.mat"), &echoes, &(struct echo_notes){.description = "another description"}),
-            STATUS_OK);
+        assert_int_equal(echo_file_write(path_in("copy.mat"), &echoes, &(struct echo_notes){.description = "other"}),
+                         STATUS_OK);
         scene_free(&scene);
         if (k == 1)
             assert_true(hashes[0] == hashes[1]);
@@ -326,8 +325,7 @@ static void mixtures_are_refused(void **state)
         {"echoes = 3;\n" QUICK_POINT QUICK_IMAGE, "key 'echoes' is 3", "a text"},
         {"echoes = \"good.mat\";\n", "key 'image' is missing", "a group"},
         {"echoes = \"good.mat\";\nimage = { x = { first = 0; step = 1; count = 3; }; r = { first = 90; step = 1; count "
-         "= 2; "
-         "}; };",
+         "= 2; }; };",
          "no pixel meets any record"},
     };
     static const struct refusal usages[] = {
