@@ -326,24 +326,17 @@ void planned_write(FILE *stream, const struct planned *planned)
     for (int precision = 0; precision < 2; precision++)
         for (int n = 0; n < planned->choices[precision].count; n++) {
             const struct candidate *c = &planned->choices[precision].list[n];
-            csv_write_text(stream, planned->scene->name);
-            fprintf(stream, ",%s,", c->algorithm->name);
-            csv_write_text(stream, c->settings);
-            fprintf(stream, ",%s,%s,", precision_name((enum precision)precision), plan_verdict_names[c->verdict]);
-            csv_write_number(stream, isinf(c->seconds) ? NAN : c->seconds);
-            fputc(',', stream);
-            csv_write_number(stream, isinf(c->error) ? NAN : c->error);
-            for (int k = 0; k < CAUSES; k++) {
-                fputc(',', stream);
-                csv_write_number(stream, isinf(c->error) ? NAN : c->forecast.error[k]);
-            }
-            const double rest[] = {c->flops, c->pairs, c->bytes};
-            for (int k = 0; k < 3; k++) {
-                fputc(',', stream);
-                csv_write_number(stream, rest[k]);
-            }
-            fputc(',', stream);
-            csv_write_text(stream, c->reason);
-            fputc('\n', stream);
+            const char *const names[] = {planned->scene->name,
+                                         c->algorithm->name,
+                                         c->settings,
+                                         precision_name((enum precision)precision),
+                                         plan_verdict_names[c->verdict],
+                                         NULL};
+            double numbers[5 + CAUSES] = {isinf(c->seconds) ? NAN : c->seconds, isinf(c->error) ? NAN : c->error};
+            for (int k = 0; k < CAUSES; k++)
+                numbers[2 + k] = isinf(c->error) ? NAN : c->forecast.error[k];
+            memcpy(numbers + 2 + CAUSES, (double[]){c->flops, c->pairs, c->bytes}, 3 * sizeof *numbers);
+            csv_write_fields(stream, names, numbers, 5 + CAUSES, false);
+            csv_write_fields(stream, (const char *const[]){c->reason, NULL}, NULL, 0, true);
         }
 }

@@ -14,8 +14,8 @@
 #include "advise/planned.h"
 
 static const char *const columns[] = {"scene",   "options", "precision", "algorithm", "settings",
-                                      "verdict", "seconds", "error",     "text"};
-enum { COLUMNS = sizeof columns / sizeof *columns, KEYS = 3 };
+                                      "verdict", "seconds", "error",     "text",      NULL};
+enum { COLUMNS = sizeof columns / sizeof *columns - 1, KEYS = 3 };
 
 struct joined {
     char text[1600];
@@ -30,19 +30,17 @@ static void line_join(void *to, const char *text)
 
 static void row_write(const struct plans *plans, const struct candidate *candidate, const char *text, FILE *file)
 {
-    const char *const texts[] = {
-        plans->scene->name,         plans->spec->text,   precision_name(plans->spec->precision),
-        candidate->algorithm->name, candidate->settings, plan_verdict_names[candidate->verdict]};
-    for (int k = 0; k < COLUMNS - KEYS; k++) {
-        csv_write_text(file, texts[k]);
-        fputc(',', file);
-    }
-    csv_write_number(file, isinf(candidate->seconds) ? NAN : candidate->seconds);
-    fputc(',', file);
-    csv_write_number(file, isinf(candidate->error) ? NAN : candidate->error);
-    fputc(',', file);
-    csv_write_text(file, text);
-    fputc('\n', file);
+    const char *const texts[] = {plans->scene->name,
+                                 plans->spec->text,
+                                 precision_name(plans->spec->precision),
+                                 candidate->algorithm->name,
+                                 candidate->settings,
+                                 plan_verdict_names[candidate->verdict],
+                                 NULL};
+    const double numbers[] = {isinf(candidate->seconds) ? NAN : candidate->seconds,
+                              isinf(candidate->error) ? NAN : candidate->error};
+    csv_write_fields(file, texts, numbers, 2, false);
+    csv_write_fields(file, (const char *const[]){text, NULL}, NULL, 0, true);
 }
 
 /* The first of its algorithm among those within the budget: the fastest. */
@@ -92,10 +90,7 @@ static void others_write(const struct csv *csv, const struct plans *plans, const
 static enum status older_read(const char *path, struct csv *csv)
 {
     enum status status = access(path, F_OK) == 0 ? csv_read(path, CSV_TAIL_KEEP, csv) : STATUS_OK;
-    for (int k = 0; k < COLUMNS && status == STATUS_OK && csv->column_count > 0; k++)
-        if (csv_column(csv, columns[k]) != k)
-            status = status_set(STATUS_INVALID, "%s: column %d must be '%s'", path, k + 1, columns[k]);
-    return status;
+    return status == STATUS_OK && csv->column_count > 0 ? csv_columns(csv, columns, NULL) : status;
 }
 
 enum status plans_keep(const char *directory, const struct plans *plans)

@@ -96,7 +96,7 @@ static void summary_write(const struct predictions *predictions, const struct al
                               quantile(ratios, count, 0.5),
                               quantile(ratios, count, 0.75),
                               quantile(ratios, count, 1)};
-    fields_write(file, (const char *const[]){name, NULL}, numbers, 6, true);
+    csv_write_fields(file, (const char *const[]){name, NULL}, numbers, 6, true);
     printf("  %-12s %6d %9.3g %9.3g %9.3g\n", name, count, numbers[1], numbers[3], numbers[5]);
 }
 
@@ -105,10 +105,10 @@ static void rows_write(const struct predictions *predictions, FILE *file)
     fputs("# sasbench predicted 1\nscene,algorithm,options,precision,cause,predicted,error_gain,ratio\n", file);
     for (int k = 0; k < predictions->count; k++) {
         const struct prediction *p = &predictions->list[k];
-        fields_write(file,
-                     (const char *const[]){p->row->scene, p->row->algorithm, p->row->options, p->row->precision,
-                                           cause_names[p->cause], NULL},
-                     (double[]){p->predicted, p->row->error_gain, p->ratio}, 3, true);
+        csv_write_fields(file,
+                         (const char *const[]){p->row->scene, p->row->algorithm, p->row->options, p->row->precision,
+                                               cause_names[p->cause], NULL},
+                         (double[]){p->predicted, p->row->error_gain, p->ratio}, 3, true);
     }
 }
 

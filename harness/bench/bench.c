@@ -14,7 +14,7 @@
 #include "files/paths.h"
 #include "files/text_file.h"
 #include "imaging/imaging.h"
-#include "results/provenance.h"
+#include "results/rows.h"
 #include "show/plot.h"
 #include "bench/bench_line.h"
 
@@ -51,12 +51,12 @@ static double gain_of_threads(const struct bench *bench, const struct bench_line
     return NAN;
 }
 
-static void head_write(FILE *file)
+static void bench_head_write(FILE *file)
 {
     struct provenance p;
     provenance_fill(&p, omp_get_max_threads());
-    fprintf(file, "# sasbench bench 5\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n",
-            p.machine, p.compiler, p.flags, p.commit, p.date);
+    fputs("# sasbench bench 5\n", file);
+    provenance_write(file, &p);
     fprintf(file, "line,scene,engine,isa,algorithm,precision,threads,columns,rows,runs,pairs,flops,plan_bytes,plan_s,"
                   "run_s,sum_s,pairs_per_s,peak_flops,fraction_of_peak,ratio_to_control,gain_of_threads,error,"
                   "fft_plan_s,fft_strips_s,run_to_fft\n");
@@ -70,7 +70,11 @@ static void line_write(const struct bench *bench, const struct bench_line *line)
     const double rate = row->pairs > 0 ? row->pairs / measurement_stage(row, "focus") : NAN;
     const double flops = line->pair_flops > 0 ? line->pair_flops * rate : row->flops / row->run_s;
     const double peak = bench_peak(line), gain = gain_of_threads(bench, line);
-    const double numbers[] = {row->pairs,
+    const double numbers[] = {line->threads,
+                              line->columns,
+                              line->rows,
+                              row->runs,
+                              row->pairs,
                               row->flops,
                               row->bytes,
                               row->plan_s,
@@ -87,18 +91,10 @@ static void line_write(const struct bench *bench, const struct bench_line *line)
                               row->run_s / line->fft.best};
     char name[320];
     snprintf(name, sizeof name, "%s%s%s", line->spec.algorithm->name, *line->spec.text ? ":" : "", line->spec.text);
-    csv_write_text(bench->file, line->name);
-    fprintf(bench->file, ",%s,", line->scene);
-    csv_write_text(bench->file, line->engine);
-    fprintf(bench->file, ",%s,", line_isa(line));
-    csv_write_text(bench->file, name);
-    fprintf(bench->file, ",%s,%d,%d,%d,%d", precision_name(line->spec.precision), line->threads, line->columns,
-            line->rows, row->runs);
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
-        fputc(',', bench->file);
-        csv_write_number(bench->file, numbers[k]);
-    }
-    fputc('\n', bench->file);
+    csv_write_fields(bench->file,
+                     (const char *const[]){line->name, line->scene, line->engine, line_isa(line), name,
+                                           precision_name(line->spec.precision), NULL},
+                     numbers, sizeof numbers / sizeof *numbers, true);
     printf("%-16s %-8s %-34.34s %-6s %2d %8.3g %8.3g %7.3f %6.3f %7.3g %5.2f %6.2f\n", line->scene, line_isa(line),
            name, precision_name(line->spec.precision), line->threads, row->plan_s, row->run_s, 1e-9 * rate,
            flops / peak, row->control_s / row->run_s, gain, row->run_s / line->fft.best);
@@ -137,7 +133,7 @@ static enum status bench_measure(struct bench *bench, bool picture)
     if (status != STATUS_OK)
         return status;
     bench->file = file.stream;
-    head_write(file.stream);
+    bench_head_write(file.stream);
     for (int first = 0, next; first < bench->count && status == STATUS_OK; first = next) {
         for (next = first; next < bench->count; next++)
             if (strcmp(bench->lines[next].scene, bench->lines[first].scene) != 0)
@@ -172,11 +168,8 @@ static enum status table_read(const char *folder, const char *name, const char *
 {
     char path[4200];
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    enum status status = csv_read(path, CSV_TAIL_KEEP, csv);
-    for (int k = 0; columns[k] && status == STATUS_OK; k++)
-        if (csv_column(csv, columns[k]) != k)
-            status = status_set(STATUS_INVALID, "%s: column %d must be '%s'", path, k + 1, columns[k]);
-    return status;
+    const enum status status = csv_read(path, CSV_TAIL_KEEP, csv);
+    return status == STATUS_OK ? csv_columns(csv, columns, NULL) : status;
 }
 
 static enum status cell_refuse(const struct csv *csv, int row, int column, const char *accepted)
@@ -312,10 +305,8 @@ static enum status goals_write(const struct goal *goals, int count, const char *
     for (int k = 0; k < count; k++) {
         const struct goal *g = &goals[k];
         const char *held = isnan(g->margin) ? "not measured" : g->margin < 1 ? "no" : "yes";
-        csv_write_text(file.stream, g->what);
-        fputc(',', file.stream);
-        csv_write_number(file.stream, g->value);
-        fprintf(file.stream, ",%s,%g,%s\n", g->least ? "at least" : "at most", g->goal, held);
+        csv_write_fields(file.stream, (const char *const[]){g->what, NULL}, &g->value, 1, false);
+        fprintf(file.stream, "%s,%g,%s\n", g->least ? "at least" : "at most", g->goal, held);
         printf("%-70s %9.3g %s %9.3g  %s\n", g->what, g->value, g->least ? ">=" : "<=", g->goal,
                strcmp(held, "yes") == 0 ? "" : held);
     }

@@ -10,34 +10,31 @@
 #include "measure/timing.h"
 #include "papers/assumptions.h"
 
-static const struct {
-    const char *name;
-    size_t offset;
-} columns[] = {
-    {"id", offsetof(struct claim, id)},
-    {"paper", offsetof(struct claim, paper)},
-    {"section", offsetof(struct claim, section)},
-    {"claim", offsetof(struct claim, claim)},
-    {"criterion", offsetof(struct claim, criterion)},
-    {"comparison", offsetof(struct claim, comparison)},
-    {"arguments", offsetof(struct claim, arguments)},
-    {"changed", offsetof(struct claim, changed)},
-};
-enum { COLUMNS = sizeof columns / sizeof *columns };
+enum { ID, PAPER, SECTION, CLAIM, CRITERION, COMPARISON, ARGUMENTS, CHANGED, COLUMNS };
+static const char *const columns[] = {"id",         "paper",     "section", "claim", "criterion",
+                                      "comparison", "arguments", "changed", NULL};
 static const char *const number_columns[] = {"of", "name", "definition", NULL};
 
 /* ---- reading ---- */
 
 static enum status row_read(const struct csv *csv, int row, struct claim *claim)
 {
-    *claim = (struct claim){.line = csv->lines[row]};
+    const char *cells[COLUMNS];
     for (int k = 0; k < COLUMNS; k++) {
-        const char *cell = csv_cell(csv, row, k);
-        if (!*cell && strcmp(columns[k].name, "arguments") != 0 && strcmp(columns[k].name, "changed") != 0)
+        cells[k] = csv_cell(csv, row, k);
+        if (!*cells[k] && k < ARGUMENTS)
             return status_set(STATUS_INVALID, "%s: line %d: column %s is empty; a text is needed", csv->path,
-                              csv->lines[row], columns[k].name);
-        memcpy((char *)claim + columns[k].offset, &cell, sizeof cell);
+                              csv->lines[row], columns[k]);
     }
+    *claim = (struct claim){.id = cells[ID],
+                            .paper = cells[PAPER],
+                            .section = cells[SECTION],
+                            .claim = cells[CLAIM],
+                            .criterion = cells[CRITERION],
+                            .comparison = cells[COMPARISON],
+                            .arguments = cells[ARGUMENTS],
+                            .changed = cells[CHANGED],
+                            .line = csv->lines[row]};
     for (int other = 0; other < row; other++)
         if (strcmp(csv_cell(csv, other, 0), claim->id) == 0)
             return status_set(STATUS_INVALID,
@@ -139,14 +136,12 @@ enum status claims_read(const char *path, struct claims *claims)
     struct csv published = {0};
     *claims = (struct claims){0};
     enum status status = csv_read(path, CSV_TAIL_KEEP, &claims->csv);
-    for (int k = 0; k < COLUMNS && status == STATUS_OK; k++)
-        if (csv_column(&claims->csv, columns[k].name) != k)
-            status = status_set(STATUS_INVALID, "%s: column %d must be '%s'", path, k + 1, columns[k].name);
+    if (status == STATUS_OK)
+        status = csv_columns(&claims->csv, columns, NULL);
     if (status == STATUS_OK)
         status = csv_read(NUMBERS_FILE, CSV_TAIL_KEEP, &claims->numbers);
-    for (int k = 0; number_columns[k] && status == STATUS_OK; k++)
-        if (csv_column(&claims->numbers, number_columns[k]) != k)
-            status = status_set(STATUS_INVALID, "%s: column %d must be '%s'", NUMBERS_FILE, k + 1, number_columns[k]);
+    if (status == STATUS_OK)
+        status = csv_columns(&claims->numbers, number_columns, NULL);
     if (status == STATUS_OK)
         status = published_read(&published);
     if (status == STATUS_OK)

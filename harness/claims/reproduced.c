@@ -45,18 +45,9 @@ static enum status reproduced_write(const char *directory, const struct measured
         item_format(l, item, sizeof item);
         snprintf(assumption, sizeof assumption, "%s%s%s%s%s", l->assumption, *l->note ? "; " : "", l->note,
                  *l->missing ? "; no value: " : "", l->missing);
-        const char *const texts[] = {l->table, item, l->quantity, l->definition, l->unit};
-        const double numbers[] = {l->paper, l->ours, l->ours - l->paper};
-        for (int n = 0; n < 5; n++) {
-            csv_write_text(file.stream, texts[n]);
-            fputc(',', file.stream);
-        }
-        for (int n = 0; n < 3; n++) {
-            csv_write_number(file.stream, numbers[n]);
-            fputc(',', file.stream);
-        }
-        csv_write_text(file.stream, assumption);
-        fputc('\n', file.stream);
+        csv_write_fields(file.stream, (const char *const[]){l->table, item, l->quantity, l->definition, l->unit, NULL},
+                         (double[]){l->paper, l->ours, l->ours - l->paper}, 3, false);
+        csv_write_fields(file.stream, (const char *const[]){assumption, NULL}, NULL, 0, true);
     }
     return text_file_close(&file, STATUS_OK);
 }
@@ -110,11 +101,9 @@ static void claim_write(FILE *stream, const struct claim *claim, const struct ev
                                  claim_verdict_names[evaluations[SCHEME_PRINTED].verdict],
                                  corrected,
                                  claim->measures && !comparison_identity(claim->comparison) ? "measured" : "formula",
-                                 evidence};
-    for (int k = 0; k < 8; k++) {
-        csv_write_text(stream, texts[k]);
-        fputc(k < 7 ? ',' : '\n', stream);
-    }
+                                 evidence,
+                                 NULL};
+    csv_write_fields(stream, texts, NULL, 0, true);
 }
 
 static void claim_print(const struct claim *claim, const struct evaluation evaluations[SCHEMES])

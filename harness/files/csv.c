@@ -199,6 +199,20 @@ int csv_column(const struct csv *csv, const char *name)
     return -1;
 }
 
+enum status csv_columns(const struct csv *csv, const char *const *names, int *places)
+{
+    for (int k = 0; names[k]; k++) {
+        const int place = csv_column(csv, names[k]);
+        if (!places && place != k)
+            return status_set(STATUS_INVALID, "%s: column %d must be '%s'", csv->path, k + 1, names[k]);
+        if (place < 0)
+            return status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", csv->path, names[k]);
+        if (places)
+            places[k] = place;
+    }
+    return STATUS_OK;
+}
+
 const char *csv_cell(const struct csv *csv, int row, int column)
 {
     return csv->cells[(size_t)row * (size_t)csv->column_count + (size_t)column];
@@ -247,4 +261,16 @@ void csv_write_number(FILE *file, double value)
 {
     if (!isnan(value))
         fprintf(file, "%.9g", value);
+}
+
+void csv_write_fields(FILE *file, const char *const *texts, const double *numbers, int number_count, bool ends)
+{
+    for (int k = 0; texts[k]; k++) {
+        csv_write_text(file, texts[k]);
+        fputc(texts[k + 1] || number_count || !ends ? ',' : '\n', file);
+    }
+    for (int k = 0; k < number_count; k++) {
+        csv_write_number(file, numbers[k]);
+        fputc(k < number_count - 1 || !ends ? ',' : '\n', file);
+    }
 }

@@ -34,6 +34,9 @@ void csv_free(struct csv *csv);
 /* Index of a column by name, -1 if there is none. */
 int csv_column(const struct csv *csv, const char *name);
 const char *csv_cell(const struct csv *csv, int row, int column);
+/* The places of the columns `names`, which NULL ends; `places` NULL: they must be the first ones, in this order.
+   Errors: STATUS_INVALID naming the first that is missing. */
+enum status csv_columns(const struct csv *csv, const char *const *names, int *places);
 /* The value of the comment `# key: value`; NULL if there is none. */
 const char *csv_comment(const struct csv *csv, const char *key);
 
@@ -45,5 +48,7 @@ bool csv_number(const char *cell, double *value);
 void csv_write_text(FILE *file, const char *text);
 /* %.9g; NAN is an empty field. */
 void csv_write_number(FILE *file, double value);
+/* Fields of a row, texts first, then numbers; NULL ends the texts. `ends`: they end the row, else a comma follows. */
+void csv_write_fields(FILE *file, const char *const *texts, const double *numbers, int number_count, bool ends);
 
 #endif

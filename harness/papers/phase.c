@@ -282,7 +282,7 @@ enum status phase_scene_study(const char *name, const char *directory, bool take
 /* ---- at given points ---- */
 
 enum { COLUMNS = 7 };
-static const char *const columns[COLUMNS] = {"d", "r", "F", "f", "fc", "v", "c"};
+static const char *const columns[] = {"d", "r", "F", "f", "fc", "v", "c", NULL};
 
 static double point_phase(const double *values, int formula)
 {
@@ -342,10 +342,7 @@ enum status phase_points_print(const char *path)
     enum status status = csv_read(path, CSV_TAIL_KEEP, &csv);
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; status == STATUS_OK && k < COLUMNS; k++)
-        if ((index[k] = csv_column(&csv, columns[k])) < 0)
-            status =
-                status_set(STATUS_INVALID, "%s: there is no column '%s'; d,r,F,f,fc,v,c are needed", path, columns[k]);
+    status = csv_columns(&csv, columns, index);
     double *values = calloc((size_t)csv.row_count + 1, COLUMNS * sizeof *values);
     if (status == STATUS_OK && !values)
         status = status_set(STATUS_FAILED, "%s: no memory for %d rows", path, csv.row_count);

@@ -112,12 +112,11 @@ static enum status rule_follow(struct session *session, int seed, int rule, FILE
     spec_free(&spec);
     if (status == STATUS_FAILED)
         return status;
-    fprintf(file, "%d,%s,%s,%s,%.6g,", seed, rule_names[rule], rules[rule].algorithm, options,
-            scene->acquisition.fs / scene->acquisition.bandwidth);
-    csv_write_number(file, error);
-    fprintf(file, ",%d,", rate);
-    csv_write_number(file, rate_enough(&problem, rule));
-    fputc('\n', file);
+    fprintf(file, "%d,", seed);
+    csv_write_fields(
+        file, (const char *const[]){rule_names[rule], rules[rule].algorithm, options, NULL},
+        (double[]){scene->acquisition.fs / scene->acquisition.bandwidth, error, rate, rate_enough(&problem, rule)}, 4,
+        true);
     return STATUS_OK;
 }
 

@@ -92,15 +92,12 @@ const struct paper_table paper_tables[] = {
     {.id = NULL},
 };
 
-static const char *const columns[] = {"table", "target", "method", "quantity", "unit", "paper", "source", "note"};
+static const char *const columns[] = {"table", "target", "method", "quantity", "unit", "paper", "source", "note", NULL};
 
 enum status published_read(struct csv *csv)
 {
     enum status status = csv_read(SASBENCH_ROOT "/results/published.csv", CSV_TAIL_KEEP, csv);
-    for (size_t k = 0; status == STATUS_OK && k < sizeof columns / sizeof *columns; k++)
-        if (csv_column(csv, columns[k]) != (int)k)
-            status = status_set(STATUS_INVALID, "%s: column %zu must be '%s'", csv->path, k + 1, columns[k]);
-    return status;
+    return status == STATUS_OK ? csv_columns(csv, columns, NULL) : status;
 }
 
 static bool cell_is(const struct csv *csv, int row, enum published_column column, const char *text, size_t length)

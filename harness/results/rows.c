@@ -56,16 +56,22 @@ static void comment_write(FILE *file, const char *key, const char *name, const c
     fputc('\n', file);
 }
 
+void provenance_write(FILE *file, const struct provenance *provenance)
+{
+    for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
+        comment_write(file, notes[k].key, "", (const char *)provenance + notes[k].offset);
+}
+
 void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
                 const struct content *contents, int content_count)
 {
     fprintf(file, "# %s\n", kind->format);
-    for (size_t k = 0; provenance && k < sizeof notes / sizeof *notes; k++)
-        comment_write(file, notes[k].key, "", (const char *)provenance + notes[k].offset);
-    if (provenance)
+    if (provenance) {
+        provenance_write(file, provenance);
         fprintf(file, "# threads: %d\n", provenance->threads);
-    else
+    } else {
         fprintf(file, "# %s\n", note);
+    }
     for (int k = 0; k < content_count; k++)
         comment_write(file, contents[k].kind, contents[k].name, contents[k].text);
     for (const struct column *column = kind->columns; column->name; column++)

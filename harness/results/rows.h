@@ -19,6 +19,8 @@ struct row_kind {
 };
 extern const struct row_kind row_kinds[KINDS];
 
+/* A line "# key: value" for each part but the threads. */
+void provenance_write(FILE *file, const struct provenance *provenance);
 /* The lines ahead of the rows; without a provenance, `note` stands in its place. */
 void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
                 const struct content *contents, int content_count);

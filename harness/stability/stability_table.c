@@ -8,7 +8,7 @@
 #include "files/csv.h"
 #include "echoes/echo_data.h"
 #include "files/text_file.h"
-#include "results/provenance.h"
+#include "results/rows.h"
 
 enum { WORD = 80, REASONS_MOST = 24 };
 
@@ -67,10 +67,11 @@ void stability_table_line(int spec_count, const struct stability_row *rows)
 
 static void row_name_write(FILE *file, const struct stability_row *row)
 {
-    csv_write_text(file, row->scene);
-    fprintf(file, ",%s,", row->spec->algorithm->name);
-    csv_write_text(file, row->spec->text);
-    fprintf(file, ",%s,", precision_name(row->spec->precision));
+    const struct spec *spec = row->spec;
+    csv_write_fields(
+        file,
+        (const char *const[]){row->scene, spec->algorithm->name, spec->text, precision_name(spec->precision), NULL},
+        NULL, 0, false);
 }
 
 static bool has_image(const struct stability_verdict *verdict)
@@ -78,28 +79,23 @@ static bool has_image(const struct stability_verdict *verdict)
     return verdict->kind == VERDICT_WORKS || verdict->kind == VERDICT_DEGRADES || isfinite(verdict->spread);
 }
 
-static void row_write(FILE *file, int mode_count, const struct stability_row *row)
+static void stability_row_write(FILE *file, int mode_count, const struct stability_row *row)
 {
     const struct stability_verdict *v = &row->verdict;
-    const double numbers[] = {v->error, v->error_most, v->difference, v->conditioning, v->digits, v->spread};
-    char text[200];
+    double numbers[] = {v->error, v->error_most, v->difference, v->conditioning, v->digits, v->spread};
+    char text[200], flags[16] = "";
     row_name_write(file, row);
     fprintf(file, "%d,", mode_count);
-    csv_write_text(file, v->engine);
     verdict_text(v, text, sizeof text);
-    fputc(',', file);
-    csv_write_text(file, text);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
-        if (isfinite(numbers[k]))
-            fprintf(file, ",%.3g", numbers[k]);
-        else
-            fputc(',', file);
+        numbers[k] = isfinite(numbers[k]) ? numbers[k] : NAN;
+    csv_write_fields(file, (const char *const[]){v->engine, text, NULL}, numbers, 6, false);
     if (has_image(v))
-        fprintf(file, ",%s,%s,%d,", v->same_bits ? "yes" : "no", v->finite ? "yes" : "no", v->exceptions);
-    else
-        fprintf(file, ",,,,");
-    csv_write_text(file, v->message);
-    fputc('\n', file);
+        snprintf(flags, sizeof flags, "%d", v->exceptions);
+    const char *const same = v->same_bits ? "yes" : "no", *const finite = v->finite ? "yes" : "no";
+    csv_write_fields(
+        file, (const char *const[]){has_image(v) ? same : "", has_image(v) ? finite : "", flags, v->message, NULL},
+        NULL, 0, true);
 }
 
 enum status stability_write(const char *path, int mode_count, int count, const struct stability_row *rows)
@@ -110,15 +106,13 @@ enum status stability_write(const char *path, int mode_count, int count, const s
         return status;
     struct provenance provenance;
     provenance_fill(&provenance, 2);
+    fputs("# sasbench stability 1\n", file.stream);
+    provenance_write(file.stream, &provenance);
     fprintf(file.stream,
-            "# sasbench stability 1\n# machine: %s\n# isa: %s\n# compiler: %s\n# flags: %s\n# libraries: %s\n"
-            "# commit: %s\n# date: %s\n# threads: 1 and 2\n",
-            provenance.machine, provenance.isa, provenance.compiler, provenance.flags, provenance.libraries,
-            provenance.commit, provenance.date);
-    fprintf(file.stream, "scene,algorithm,options,precision,modes,engine,verdict,error,error_bound,difference,"
-                         "conditioning,digits,spread,same_bits,finite,exceptions,reason\n");
+            "# threads: 1 and 2\nscene,algorithm,options,precision,modes,engine,verdict,error,error_bound,difference,"
+            "conditioning,digits,spread,same_bits,finite,exceptions,reason\n");
     for (int k = 0; k < count; k++)
-        row_write(file.stream, mode_count, &rows[k]);
+        stability_row_write(file.stream, mode_count, &rows[k]);
     return text_file_close(&file, STATUS_OK);
 }
 
@@ -156,8 +150,8 @@ enum status stability_expected_write(const char *path, int count, const struct s
 /* ---- comparison with the expected rows ---- */
 
 enum { SCENE, ALGORITHM, OPTIONS, PRECISION, VERDICT, ERROR_BOUND, DIGITS_BOUND, COLUMNS };
-static const char *const column_names[COLUMNS] = {"scene",   "algorithm",   "options",     "precision",
-                                                  "verdict", "error_bound", "digits_bound"};
+static const char *const column_names[] = {"scene",   "algorithm",   "options",      "precision",
+                                           "verdict", "error_bound", "digits_bound", NULL};
 
 /* The row of the file for the same image, -1 without one. */
 static int row_find(const struct csv *csv, const int *columns, const struct stability_row *row)
@@ -203,12 +197,8 @@ enum status stability_compare(const char *path, int count, const struct stabilit
     int columns[COLUMNS];
     enum status status = csv_read(path, CSV_TAIL_KEEP, &csv);
     *differ = *unknown = 0;
-    for (int k = 0; k < COLUMNS && status == STATUS_OK; k++) {
-        columns[k] = csv_column(&csv, column_names[k]);
-        if (columns[k] < 0)
-            status = status_set(STATUS_INVALID, "%s: has no column %s, must be what `stability` wrote", path,
-                                column_names[k]);
-    }
+    if (status == STATUS_OK)
+        status = csv_columns(&csv, column_names, columns);
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         char fault[300];
         int expected = row_find(&csv, columns, &rows[k]);

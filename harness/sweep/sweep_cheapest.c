@@ -104,14 +104,14 @@ static void family_write(struct group *group, size_t family, int c, FILE *file)
         ties_find(group, best, pow(10, decade), begins, ties, sizeof ties);
         if (told)
             row_tell(row, threshold, ties);
-        fields_write(file,
-                     (const char *const[]){row->scene, sweep_costs[c].name, threshold, row->algorithm, row->options,
-                                           row->precision, NULL},
-                     (double[]){row->run_s, row->control_s / row->run_s, row->flops, row->error, row->error_gain,
-                                row->pslr_db, row->islr_db},
-                     7, false);
-        fields_write(file, (const char *const[]){families[family].name, ties, is_noisy(row) ? "~" : "", NULL}, NULL, 0,
-                     true);
+        csv_write_fields(file,
+                         (const char *const[]){row->scene, sweep_costs[c].name, threshold, row->algorithm, row->options,
+                                               row->precision, NULL},
+                         (double[]){row->run_s, row->control_s / row->run_s, row->flops, row->error, row->error_gain,
+                                    row->pslr_db, row->islr_db},
+                         7, false);
+        csv_write_fields(file, (const char *const[]){families[family].name, ties, is_noisy(row) ? "~" : "", NULL}, NULL,
+                         0, true);
     }
 }
 

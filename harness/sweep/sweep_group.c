@@ -47,15 +47,3 @@ enum status group_fill(const struct results *results, const char *scene, struct 
     group->high = group->low + most;
     return STATUS_OK;
 }
-
-void fields_write(FILE *file, const char *const *texts, const double *numbers, int number_count, bool ends)
-{
-    for (int k = 0; texts[k]; k++) {
-        csv_write_text(file, texts[k]);
-        fputc(texts[k + 1] || number_count || !ends ? ',' : '\n', file);
-    }
-    for (int k = 0; k < number_count; k++) {
-        csv_write_number(file, numbers[k]);
-        fputc(k < number_count - 1 || !ends ? ',' : '\n', file);
-    }
-}

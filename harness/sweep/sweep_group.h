@@ -36,9 +36,6 @@ extern const struct sweep_cost sweep_costs[SWEEP_COSTS];
 /* Fill error, cost, low and high. */
 void group_values(struct group *group, const struct sweep_cost *cost);
 
-/* Fields of a row of CSV, texts first, then numbers; NULL ends the texts. `ends`: they end the row. */
-void fields_write(FILE *file, const char *const *texts, const double *numbers, int number_count, bool ends);
-
 /* The cheapest setting for each decade of error, of all algorithms and of each family, as rows of cheapest.csv. */
 void cheapest_write(struct group *group, FILE *file);
 

@@ -52,12 +52,12 @@ static void slope_write(const struct group *group, const struct point *points, c
     char name[512], range[80];
     if (isnan(fit.slope))
         return;
-    fields_write(file,
-                 (const char *const[]){row->scene, row->algorithm, points->setting.rest, row->precision,
-                                       points->setting.name, part, NULL},
-                 (double[]){points[0].setting.value, points[count - 1].setting.value, rates[0], rates[count - 1],
-                            fit.points, fit.slope, fit.first, fit.last, fit.residual_log10},
-                 9, true);
+    csv_write_fields(file,
+                     (const char *const[]){row->scene, row->algorithm, points->setting.rest, row->precision,
+                                           points->setting.name, part, NULL},
+                     (double[]){points[0].setting.value, points[count - 1].setting.value, rates[0], rates[count - 1],
+                                fit.points, fit.slope, fit.first, fit.last, fit.residual_log10},
+                     9, true);
     if (!group->told)
         return;
     snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *points->setting.rest ? ":" : "", points->setting.rest,

@@ -27,10 +27,10 @@ static void fronts_write(struct group *group, FILE *file)
             pareto_ties_find(group->points.count, group->low, group->high, group->error, size, group->front);
         for (int k = 0; k < size + ties; k++) {
             const struct measurement *row = group->points.list[group->front[k]].row;
-            fields_write(file,
-                         (const char *const[]){row->scene, sweep_costs[c].name, row->algorithm, row->options,
-                                               row->precision, NULL},
-                         (double[]){group->cost[group->front[k]], row->error, k >= size}, 3, true);
+            csv_write_fields(file,
+                             (const char *const[]){row->scene, sweep_costs[c].name, row->algorithm, row->options,
+                                                   row->precision, NULL},
+                             (double[]){group->cost[group->front[k]], row->error, k >= size}, 3, true);
         }
     }
 }
@@ -54,10 +54,10 @@ static void rules_write(struct group *group, const struct scene *given, const st
         double lambda = a->sound_speed / a->fc, bin = a->sound_speed / (2 * a->fs);
         double resolution = a->tx_length > 0 ? a->tx_length / 2 : NAN, fraction = a->bandwidth / a->fs;
         double bp22 = 2 * bin * 10 * lambda / (resolution * resolution), zp15 = 2 * a->fc / a->fs;
-        fields_write(file, (const char *const[]){group->points.scene, NULL},
-                     (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
-                                M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction},
-                     7, true);
+        csv_write_fields(file, (const char *const[]){group->points.scene, NULL},
+                         (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
+                                    M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction},
+                         7, true);
         if (group->told)
             printf("\n%s: upsampling rates required by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n",
                    group->points.scene, bp22, zp15);
