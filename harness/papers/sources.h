@@ -38,7 +38,7 @@ bool scheme_formula(enum scheme scheme, const char *name, const char **formula);
 /* Plain engines, as the papers compare them: every delay evaluated, every cell's phase by libm, each receiver summed
    by itself. */
 #define PLAIN_BP  "engine=general,exact=true"
-#define PLAIN_RMA "phases=libm"
+#define PLAIN_RMA "sum=after,phases=libm"
 
 /* Definitions of a time. */
 #define PLAIN_TIMES  "plain engines, extrapolated"
