@@ -35,8 +35,8 @@ static inline void stage_end(struct workspace *w, enum rma_stage stage)
     w->mark = now;
 }
 
-/* The receivers' spectra at this wavenumber, corrected for each block and added up: `sums` has [needed] rows.
-   Evanescent bins have any values. */
+/* The receivers' spectra at this wavenumber, corrected for each block and added up (or not yet): `sums` has
+   [needed][1 or receivers] rows. Evanescent bins have any values. */
 void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums);
 
 /* By delay compensation: monostatic echoes of wavenumbers p, p + period, ... that are used, in the order of turns, each

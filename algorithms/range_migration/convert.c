@@ -37,8 +37,8 @@ struct rows {
     size_t row;
 };
 
-/* The group's receivers times their corrections at bins [b, b + pair VECTOR), added to `sum`, and stored row by row (or
-   not: NULL). `pair` is a constant where this is inlined: recurrences side by side hide each other's
+/* The group's receivers times their corrections at bins [b, b + pair VECTOR): stored row by row, or added up into one
+   row, or both (NULL: left out). `pair` is a constant where this is inlined: recurrences side by side hide each other's
    latency. */
 static inline __attribute__((always_inline)) void vectors_apply(struct rows in, int count, int b, int pair,
                                                                 real rotor[restrict 6][SPAN], struct rows stored,
@@ -53,8 +53,8 @@ static inline __attribute__((always_inline)) void vectors_apply(struct rows in, 
         wi[v] = *(vec *)&rotor[1][bin];
         sr[v] = *(vec *)&rotor[2][bin];
         si[v] = *(vec *)&rotor[3][bin];
-        sum_r[v] = *(vec *)(sum + at[v]);
-        sum_i[v] = *(vec *)(sum + at[v] + LANES);
+        sum_r[v] = sum ? *(vec *)(sum + at[v]) : (vec){0};
+        sum_i[v] = sum ? *(vec *)(sum + at[v] + LANES) : (vec){0};
     }
     const real *x = in.values;
     for (int i = 0; i < count; i++, x += in.row)
@@ -66,8 +66,10 @@ static inline __attribute__((always_inline)) void vectors_apply(struct rows in, 
                 real *z = stored.values + (size_t)i * stored.row + at[v];
                 *(vec *)z = pr;
                 *(vec *)(z + LANES) = pi;
-                sum_r[v] += pr;
-                sum_i[v] += pi;
+                if (sum) {
+                    sum_r[v] += pr;
+                    sum_i[v] += pi;
+                }
             } else { /* four multiply-adds, where the product by itself takes six operations */
                 sum_r[v] = sum_r[v] + xr * wr[v];
                 sum_i[v] = sum_i[v] + xr * wi[v];
@@ -81,7 +83,7 @@ static inline __attribute__((always_inline)) void vectors_apply(struct rows in, 
             si[v] = sr[v] * ki + si[v] * kr;
             sr[v] = t;
         }
-    for (int v = 0; v < pair; v++) {
+    for (int v = 0; sum && v < pair; v++) {
         *(vec *)(sum + at[v]) = sum_r[v];
         *(vec *)(sum + at[v] + LANES) = sum_i[v];
     }
@@ -116,7 +118,10 @@ static void apply_recurrence(const struct workspace *w, const struct rma_ramp *r
             continue;
         }
         to.values += (size_t)g->begin * stored.row;
-        group_apply(from, g->count, n, rotor, to, sum);
+        if (sum)
+            group_apply(from, g->count, n, rotor, to, sum);
+        else
+            group_apply(from, g->count, n, rotor, to, NULL);
     }
 }
 
@@ -143,8 +148,10 @@ static void apply_libm(const struct workspace *w, double r, double less, int k, 
                 z[0] = re;
                 z[LANES] = im;
             }
-            sum[at] += re;
-            sum[at + LANES] += im;
+            if (sum) {
+                sum[at] += re;
+                sum[at + LANES] += im;
+            }
         }
 }
 
@@ -158,7 +165,8 @@ struct correction {
 static void apply(const struct workspace *w, struct correction correction, int k, int n, struct rows in,
                   struct rows stored, real *sum)
 {
-    memset(sum, 0, 2 * (size_t)n * sizeof *sum);
+    if (sum)
+        memset(sum, 0, 2 * (size_t)n * sizeof *sum);
     if (w->rma->recurs)
         apply_recurrence(w, correction.ramps, k, n, in, stored, sum);
     else
@@ -172,6 +180,8 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
     const size_t row = 2 * (size_t)swath->row;
     const int turns = w->q - swath->wavenumbers / 2, period = swath->period, reference = swath->reference;
     const int column = ((rma->spacing < 0 ? -turns : turns) % period + period) % period;
+    const bool add = rma->options.sum == RMA_SUM_BEFORE;
+    const size_t block = (add ? 1 : (size_t)rma->receivers) * row;
     real *data = (real *)swath->data + (size_t)column * (size_t)rma->receivers * row;
     if (!rma->converts) {
         memcpy(sums, data, row * sizeof *sums);
@@ -196,15 +206,18 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
     for (int k = w->line.begin / LANES * LANES; k < swath->row; k += SPAN) {
         const int n = swath->row - k < SPAN ? swath->row - k : SPAN;
         const struct rows in = {data + 2 * k, row}, none = {NULL, 0};
-        real *out = sums + 2 * k, *own = out + (size_t)reference * row;
-        /* The reference block has no differential: its sum comes with the bulk. */
-        const struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};
-        apply(w, (struct correction){bulk, centre, 0}, k, n, in, swath->needed == 1 ? none : converted, own);
+        real *out = sums + 2 * k, *own = out + (size_t)reference * block;
+        /* The reference block has no differential: its sum, or its rows, come with the bulk. */
+        struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};
+        if (!add)
+            converted = (struct rows){own, row};
+        apply(w, (struct correction){bulk, centre, 0}, k, n, in, add && swath->needed == 1 ? none : converted,
+              add ? own : NULL);
         stage_end(w, RMA_BULK);
-        for (int b = 0; b < swath->needed; b++, out += row)
+        for (int b = 0; b < swath->needed; b++, out += block)
             if (b != reference)
                 apply(w, (struct correction){ramps + b * rma->groups, rma_block_range(rma, swath->blocks[b]), centre},
-                      k, n, converted, none, out);
+                      k, n, converted, add ? none : (struct rows){out, row}, add ? out : NULL);
         stage_end(w, RMA_DIFFERENTIAL);
     }
 }

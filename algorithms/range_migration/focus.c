@@ -179,15 +179,17 @@ static void spectrum(const struct workspace *w, const real *cut, real *re)
 static void reconstruct(struct workspace *w, real *sums, real *cut)
 {
     const struct rma_swath *swath = w->swath;
-    const bool whole = swath->needed == 1;
+    const int summed = w->rma->options.sum == RMA_SUM_BEFORE ? 1 : w->rma->receivers;
+    const bool whole = swath->needed * summed == 1;
     real *place = buffer(w, RMA_PLACES);
     memset(cut, 0, 2 * (size_t)swath->stolt_length * sizeof *cut);
     if (!whole)
         places(w, place);
-    for (int n = 0; n < swath->needed; n++, sums += 2 * swath->row) {
-        mask(w, sums);
-        add_block(w, sums, swath->blocks[n], whole ? NULL : place, cut);
-    }
+    for (int n = 0; n < swath->needed; n++)
+        for (int m = 0; m < summed; m++, sums += 2 * swath->row) {
+            mask(w, sums);
+            add_block(w, sums, swath->blocks[n], whole ? NULL : place, cut);
+        }
 }
 
 /* `samples`: delay compensation's. */

@@ -12,7 +12,8 @@
 #include "range_migration/rma_engine.h"
 
 static const char *const variants[] = {"printed", "corrected", NULL}, *const spacings[] = {"uniform", "inverse", NULL},
-                         *const blends[] = {"off", "on", NULL}, *const phases[] = {"recurrence", "libm", NULL};
+                         *const blends[] = {"off", "on", NULL}, *const orders[] = {"before", "after", NULL},
+                         *const phases[] = {"recurrence", "libm", NULL};
 const char *const rma_stolt_names[] = {"4", "6", "8", "12", "16", NULL};
 const char *const rma_delay_taps_names[] = {"8", "12", "16", "24", NULL};
 
@@ -30,6 +31,8 @@ const struct param rma_params[] = {
      .sweep = "off on", .terse = true},
     {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names), .summary = "Kaiser taps of the Stolt interpolation",
      .initial = 2, .max = 4, .sweep = "4 6 8 12 16", .terse = true},
+    {PARAM_NAMED(struct rma_options, sum, orders), .summary = "receivers are summed before or after the range IFFT",
+     .initial = RMA_SUM_BEFORE, .max = RMA_SUM_AFTER, .terse = true, .hidden = true},
     {PARAM_NAMED(struct rma_options, phases, phases),
      .summary = "by recurrence over the receivers, or by libm for each cell", .initial = RMA_RECURRENCE,
      .max = RMA_LIBM, .terse = true, .hidden = true},
@@ -52,7 +55,8 @@ static const struct rma_transform *transform(const struct rma *rma)
 static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
 {
     const double receivers = rma->receivers, band = swath->band, q = swath->wavenumbers, length = swath->length;
-    const double weights = swath->needed > 1 ? 4 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
+    const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    const double weights = swath->needed * sums > 1 ? 4 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
     double flops = q * (fft_flops(swath->stolt_length) + 2 * length);
     if (rma->delay)
         flops += receivers
@@ -62,7 +66,7 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
     else
         flops += receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
                  + q * receivers * band * (rma->converts ? 8 : 0) * swath->needed
-                 + q * (swath->needed * fft_flops(length) + weights * length);
+                 + q * sums * (swath->needed * fft_flops(length) + weights * length);
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         double rows = patch->grid.r_count,

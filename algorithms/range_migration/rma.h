@@ -29,14 +29,15 @@
 
 /* Settings of all methods; 0 where a method does not have one. */
 struct rma_options {
-    int blocks;                        /* range blocks over all wanted rows; 0: by Eq. (13) and limit */
-    double limit;                      /* rad: the phase error that Eq. (13) accepts */
-    int spacing, blend, stolt, phases; /* indices into the choices of rma_params */
-    int variant;                       /* enum rma_variant: of rma_lbf */
-    int terms, taps;                   /* of rma_delay; taps: index into rma_delay_taps_names */
+    int blocks;                             /* range blocks over all wanted rows; 0: by Eq. (13) and limit */
+    double limit;                           /* rad: the phase error that Eq. (13) accepts */
+    int spacing, blend, stolt, sum, phases; /* indices into the choices of rma_params */
+    int variant;                            /* enum rma_variant: of rma_lbf */
+    int terms, taps;                        /* of rma_delay; taps: index into rma_delay_taps_names */
 };
 
 enum rma_spacing { RMA_UNIFORM, RMA_INVERSE };
+enum rma_sum { RMA_SUM_BEFORE, RMA_SUM_AFTER };
 enum rma_phases { RMA_RECURRENCE, RMA_LIBM };
 enum rma_variant { RMA_PRINTED, RMA_CORRECTED };
 

@@ -19,7 +19,7 @@
 
    bulk          [M][row] -> [M][RMA_SPAN], for RMA_SPAN bins at a time
                  each receiver's correction at the range of the reference block, whose own sum is then complete
-   differential  [M][RMA_SPAN] -> [N][row]; takes turns with bulk until all bins are done
+   differential  [M][RMA_SPAN] -> [N][row], or [N][M][row] with sum=after; takes turns with bulk until all bins are done
                  the rest of the correction for each other block, summed over the receivers
    reconstruct   [N][row] -> [length] samples in range -> [RMA_GUARD + stolt_length + RMA_GUARD] bins
                  an IFFT of `length` for each block; each sample is its block's, or blends the nearest four; samples
@@ -76,7 +76,7 @@ enum rma_buffer {
     RMA_RAMPS,       /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
     RMA_ABSCISSAS,   /* double [row]: y of each bin */
     RMA_CONVERTED,   /* [receivers][RMA_SPAN]: some bins after the bulk correction */
-    RMA_SUMS,        /* [needed][row]: spectra of each block */
+    RMA_SUMS,        /* [needed][1 or receivers][row]: spectra of each block */
     RMA_WAVE,        /* complex [longest transform of a swath] */
     RMA_TRANSFORMED, /* complex [longest transform]: the transform of RMA_WAVE */
     RMA_CUT,         /* complex [stolt_length]: the blocks put together, from sample `centre` on; delay

@@ -115,7 +115,8 @@ static double share_kept(const struct rma *rma, const struct rma_swath *swath)
 
 static void swath_cost(const struct rma *rma, const struct rma_swath *swath, double cost[MIGRATIONS])
 {
-    const double receivers = rma->receivers, length = swath->length;
+    const double receivers = rma->receivers, length = swath->length,
+                 sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
     const double all = swath->wavenumbers, kept = all * share_kept(rma, swath);
     cost[MIGRATION_SPREAD] += all * swath->row;
     cost[MIGRATION_FOCUS] += kept * swath->stolt_length;
@@ -125,7 +126,7 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
     } else {
         cost[MIGRATION_RECORDS] += receivers * rma->pings * fft_flops(length);
         cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * 8 * swath->needed : 0;
-        cost[MIGRATION_FOCUS] += kept * swath->needed * length;
+        cost[MIGRATION_FOCUS] += kept * swath->needed * sums * length;
     }
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];

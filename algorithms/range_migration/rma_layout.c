@@ -382,7 +382,7 @@ static enum status lay_record(struct rma *rma)
 static void lay_scratch(struct rma *rma)
 {
     const size_t real_bytes = rma->problem.precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
-    const size_t receivers = (size_t)rma->receivers;
+    const size_t receivers = (size_t)rma->receivers, summed = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
     const size_t record = 2 * (size_t)rma->record_length * real_bytes;
     size_t most[RMA_BUFFERS] = {[RMA_RECORD] = record, [RMA_TRANSFORMED] = record};
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
@@ -396,7 +396,7 @@ static void lay_scratch(struct rma *rma)
             [RMA_RAMPS] = (1 + needed) * (size_t)rma->groups * sizeof(struct rma_ramp),
             [RMA_ABSCISSAS] = (size_t)s->row * sizeof(double),
             [RMA_CONVERTED] = receivers * 2 * RMA_SPAN * real_bytes,
-            [RMA_SUMS] = needed * row,
+            [RMA_SUMS] = needed * summed * row,
             [RMA_WAVE] = 2 * longest * real_bytes,
             [RMA_TRANSFORMED] = 2 * longest * real_bytes,
             [RMA_CUT] = rma->delay ? (size_t)rma_turns(rma) * row : 2 * stolt * real_bytes,

@@ -32,7 +32,7 @@ static const char *const specs[] = {
     "bp_factorised",
     "bp_factorised:stages=2,base=4",
     "rma_lbf",
-    "rma_lbf:variant=printed,blocks=2,spacing=uniform,blend=off,stolt=16",
+    "rma_lbf:variant=printed,blocks=2,spacing=uniform,blend=off,stolt=16,sum=after",
     "rma_pca",
     "rma_wu",
     "rma_numeric",
