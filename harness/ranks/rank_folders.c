@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "files/folder.h"
 #include "results/merge.h"
 #include "text/number.h"
 
@@ -38,17 +39,18 @@ static void folder_remove(const char *folder)
     rmdir(folder);
 }
 
-/* One without rows has nothing to join. */
+/* One without rows has nothing to join; it is removed where no rank of another run has it. */
 static enum status folder_join(const char *folder, const char *directory)
 {
     static struct merged merged[KINDS_OF_MACHINES];
     char path[4400];
-    int count;
+    int count, lock = -1;
     snprintf(path, sizeof path, "%s/measurements.csv", folder);
     const enum status status =
-        access(path, F_OK) == 0 ? results_merge(1, &folder, directory, merged, &count) : STATUS_OK;
+        access(path, F_OK) == 0 ? results_merge(1, &folder, directory, merged, &count) : folder_take(folder, &lock);
     if (status == STATUS_OK)
         folder_remove(folder);
+    folder_leave(lock);
     return status;
 }
 
