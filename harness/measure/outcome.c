@@ -77,6 +77,8 @@ static enum status quality_fill(const struct session *session, struct outcome *o
         reason_add(reason, reason_size, "no errors, for there is no exact image: %s", session->no_reference);
     else if (*error.reason)
         reason_add(reason, reason_size, "%s", error.reason);
+    if (session->flown.patch_count > 0)
+        row->error_flown = metrics_error(&outcome->image, &session->flown).error_gain;
     if (points == 0)
         reason_add(reason, reason_size, OUTCOME_NO_TARGETS);
     double *width = values, *pslr = values + points, *islr = values + 2 * points;
@@ -199,6 +201,15 @@ static void warnings_add(const struct condition *list, int count, struct outcome
         }
 }
 
+/* `error` compares with the best image by the stated track, which true motion may blur. */
+static void flown_tell(struct outcome *outcome)
+{
+    if (isfinite(outcome->row.error_flown))
+        reason_add(outcome->reason, sizeof outcome->reason,
+                   OUTCOME_WARNING "against the exact image by the true track the error is %.2g after one gain",
+                   outcome->row.error_flown);
+}
+
 /* Check the settings' promise against the measurement, with room for rounding. */
 static void promise_hold(const struct spec *spec, struct outcome *outcome)
 {
@@ -221,6 +232,7 @@ static void warnings_fill(const struct session *session, const struct spec *aske
     struct condition list[CONDITIONS_MAX];
     int count = algorithm_conditions(spec->algorithm, problem, spec->options, list, CONDITIONS_MAX);
     warnings_add(session->conditions, session->condition_count, outcome);
+    flown_tell(outcome);
     if (*session->no_reference) {
         const struct darkness darkness = image_darkness(&session->echoes[spec->precision], &outcome->image);
         struct condition of_image[DARKNESS_CONDITIONS];
@@ -285,6 +297,7 @@ enum status outcome_score(struct session *session, const char *name, struct imag
     if (!isnan(seconds))
         reason_add(outcome->reason, sizeof outcome->reason, OUTCOME_WARNING "the run time is stated, not measured");
     warnings_add(session->conditions, session->condition_count, outcome);
+    flown_tell(outcome);
     return STATUS_OK;
 }
 

@@ -85,14 +85,27 @@ enum status session_image(struct session *session, const struct spec *asked, str
     return imaging_form(spec, &problem, &session->echoes[spec->precision], image, NULL);
 }
 
+/* The exact image, by the stated track or the true one. */
+static enum status form_exact(const struct session *session, const struct spec *spec,
+                              const struct acquisition *acquisition, struct image *image)
+{
+    struct problem problem = compared_problem(session->scene, PRECISION_DOUBLE);
+    struct echoes echoes = session->echoes[PRECISION_DOUBLE];
+    problem.acquisition = echoes.acquisition = acquisition;
+    return imaging_form(spec, &problem, &echoes, image, NULL);
+}
+
 /* A refusal of the exact image need not stop other algorithms. */
 static enum status form_reference(struct session *session)
 {
+    const struct scene *scene = session->scene;
     struct spec spec;
     enum status status = spec_parse("reference:precision=double", &spec);
     if (status != STATUS_OK)
         return status;
-    status = session_image(session, &spec, &session->reference);
+    status = form_exact(session, &spec, &scene->acquisition, &session->reference);
+    if (status == STATUS_OK && scene->flown)
+        status = form_exact(session, &spec, scene->flown, &session->flown);
     if (status == STATUS_OK) {
         const struct darkness darkness = image_darkness(&session->echoes[PRECISION_DOUBLE], &session->reference);
         darkness_conditions(&darkness, session->conditions + session->condition_count);
@@ -138,6 +151,7 @@ void session_close(struct session *session)
     free(session->chosen);
     control_end(&session->control);
     image_free(&session->reference);
+    image_free(&session->flown);
     echoes_free(&session->echoes[PRECISION_FLOAT]);
     echoes_free(&session->echoes[PRECISION_DOUBLE]);
 }

@@ -29,6 +29,7 @@ struct session {
     const struct scene *scene; /* borrowed, outlives the session */
     struct echoes echoes[2]; /* by enum precision; extreme echoes are divided by one power of two, and images keep it */
     struct image reference;  /* double, on the patches where images are compared; without patches where there is none */
+    struct image flown;      /* the same by the true track; without patches where the stated track is the true one */
     char no_reference[512];  /* why there is no exact image: refused, or no memory; else empty */
     /* [condition_count] of the scene by itself and its exact image */
     struct condition conditions[SCENE_CONDITIONS + DARKNESS_CONDITIONS];

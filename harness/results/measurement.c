@@ -64,6 +64,15 @@ const struct column measurement_columns[] = {
              {"peak/median", "", 1, NULL, .brief = "peak", .of = SHOWN_WITHOUT_TARGETS}),
     M_LATER(TEXT, host),
     M_LATER(REAL, load),
+    {"error_flown",
+     COLUMN_REAL,
+     offsetof(struct measurement, error_flown),
+     "1",
+     BETTER_LOWER,
+     CLASS_QUALITY,
+     {2e-6, 1e-9},
+     1e-3,
+     .later = true},
     {.name = NULL},
 };
 

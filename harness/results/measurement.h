@@ -23,6 +23,7 @@ struct measurement {
     double entropy, contrast, peak_over_median; /* metrics_sharpness; NAN where only a part was imaged */
     const char *host;                           /* that measured it */
     double load;                                /* ready processes there, the system's mean over the last minute */
+    double error_flown; /* as error_gain, against the exact image by the true track; NAN where it is the stated one */
 };
 
 /* One row of targets.csv. */

@@ -220,7 +220,7 @@ static void run_leaves_its_results_and_keeps_them(void **state)
     assert_header("results/quick/measurements.csv",
                   "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,"
                   "runs,control_s,stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,"
-                  "pslr_db,islr_db,run_q1_s,run_q3_s,entropy,contrast,peak_over_median,host,load");
+                  "pslr_db,islr_db,run_q1_s,run_q3_s,entropy,contrast,peak_over_median,host,load,error_flown");
     assert_header("results/quick/targets.csv", "scene,algorithm,options,precision,target,axis,definition,extent_m,"
                                                "position_error_m,phase_error_rad,width_m,pslr_db,islr_db");
     csv_load("results/quick/measurements.csv", &first);

@@ -90,8 +90,8 @@ static const char head[] =
     "# program: %s\n# threads: 1\n# scene a: %s\n"
     "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,"
     "runs,control_s,stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,"
-    "pslr_db,islr_db,run_q1_s,run_q3_s,entropy,contrast,peak_over_median,host,load\n";
-static const char row[] = "a,%s,,float,1,general,%s,,,1,%s,1,5,1,,,1,1,1,1,1,1,,,,1,1,1,1,1,node,0.5\n";
+    "pslr_db,islr_db,run_q1_s,run_q3_s,entropy,contrast,peak_over_median,host,load,error_flown\n";
+static const char row[] = "a,%s,,float,1,general,%s,,,1,%s,1,5,1,,,1,1,1,1,1,1,,,,1,1,1,1,1,node,0.5,\n";
 
 /* A folder with one row. */
 static void results_make(const char *name, const char *const from[3], const char *algorithm, const char *status,

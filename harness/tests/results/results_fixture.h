@@ -8,7 +8,7 @@
 #define MEASUREMENT_COLUMNS                                                                                            \
     "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s,"    \
     "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db,"                 \
-    "run_q1_s,run_q3_s,entropy,contrast,peak_over_median,host,load"
+    "run_q1_s,run_q3_s,entropy,contrast,peak_over_median,host,load,error_flown"
 #define MEASUREMENT_HEADER MEASUREMENT_COLUMNS "\n"
 
 #define PROVENANCE "# machine: a machine\n# isa: v3\n# libraries: some\n# commit: c1\n# program: 0123\n# threads: 2\n"

@@ -73,7 +73,7 @@ static void test_earlier_columns(void **state)
     struct results_folder *results = open_ok("c1", 2);
     assert_non_null(results_folder_find(results, "s", "a", "", "float"));
     results_folder_close(results);
-    snprintf(text, sizeof text, "\n%s%s,,\n", MEASUREMENT_HEADER, row);
+    snprintf(text, sizeof text, "\n%s%s,,,\n", MEASUREMENT_HEADER, row);
     assert_non_null(strstr(file_text(measurements_path), text));
 }
 
