@@ -142,6 +142,8 @@ enum status command_score(const struct task *task)
         status = metrics_cover(&file.image, scene.reference_count, scene.reference_patches);
         if (status != STATUS_OK)
             status = status_set(status, "score: %s does not fit %s: %s", task->names[0], scene.name, status_message());
+        else if (!image_is_finite(&file.image))
+            status = status_set(STATUS_INVALID, "score: %s has pixels that are not finite", task->names[0]);
     }
     if (status == STATUS_OK)
         status = folder_find(task, &scene, name, file.image.precision, &folder);

@@ -62,6 +62,8 @@ static enum status quality_fill(const struct session *session, struct outcome *o
     struct measurement *row = &outcome->row;
     char *reason = outcome->reason;
     const size_t reason_size = sizeof outcome->reason;
+    if (!image_is_finite(&outcome->image))
+        return status_set(STATUS_FAILED, "the image has pixels that are not finite");
     int points = session->scene->point_count, defined = 0, unmeasured = 0;
     double *values = calloc(3 * (size_t)points + 1, sizeof *values);
     outcome->targets = calloc((size_t)points * AXES * DEFINITIONS + 1, sizeof *outcome->targets);
@@ -74,9 +76,10 @@ static enum status quality_fill(const struct session *session, struct outcome *o
     row->error_gain = error.error_gain;
     row->phase_rms_rad = error.phase_rms_rad;
     if (*session->no_reference)
-        reason_add(reason, reason_size, "no errors, for there is no exact image: %s", session->no_reference);
+        reason_add(reason, reason_size, OUTCOME_WARNING "no errors, for there is no exact image: %s",
+                   session->no_reference);
     else if (*error.reason)
-        reason_add(reason, reason_size, "%s", error.reason);
+        reason_add(reason, reason_size, OUTCOME_WARNING "%s", error.reason);
     if (session->flown.patch_count > 0)
         row->error_flown = metrics_error(&outcome->image, &session->flown).error_gain;
     if (points == 0)
@@ -87,7 +90,7 @@ static enum status quality_fill(const struct session *session, struct outcome *o
         outcome->target_count +=
             target_rows(session, &outcome->image, t, row, outcome->targets + outcome->target_count, &azimuth);
         if (*azimuth.reason && unmeasured++ == 0)
-            reason_add(reason, reason_size, "target %d: %s", t + 1, azimuth.reason);
+            reason_add(reason, reason_size, OUTCOME_WARNING "target %d: %s", t + 1, azimuth.reason);
         if (isfinite(azimuth.pslr_db[DEFINITION_NULL])) {
             width[defined] = azimuth.width_m;
             pslr[defined] = azimuth.pslr_db[DEFINITION_NULL];
@@ -96,7 +99,7 @@ static enum status quality_fill(const struct session *session, struct outcome *o
         }
     }
     if (unmeasured > 1)
-        reason_add(reason, reason_size, "%d more targets likewise", unmeasured - 1);
+        reason_add(reason, reason_size, OUTCOME_WARNING "%d more targets likewise", unmeasured - 1);
     row->width_m = median(width, defined);
     row->pslr_db = median(pslr, defined);
     row->islr_db = median(islr, defined);
@@ -320,6 +323,8 @@ void outcome_measure(struct session *session, const struct spec *asked, enum eff
         if (asked != spec)
             choice_fill(session_chosen(session, asked), outcome);
         status = quality_fill(session, outcome);
+    }
+    if (status == STATUS_OK) {
         warnings_fill(session, asked, spec, &problem, outcome);
         if (*outcome->noise)
             reason_add(outcome->reason, sizeof outcome->reason, "%s", outcome->noise);

@@ -142,6 +142,8 @@ static void unfit_images_are_refused(void **state)
         {{"score", "rows.npy", "study/quick", "--grid", "0:1:2,3:4:5"}, {"[13, 61]", "5 ranges and 2 places"}},
         {{"score", "scene.cfg", "study/quick"}, {"scene.cfg"}},
         {{"score", "short.npy", "study/quick"}, {"ends after 1 of 793 numbers"}},
+        {{"score", "nan.npy", "study/quick"}, {"nan.npy has pixels that are not finite"}},
+        {{"score", "three.npy", "study/quick"}, {"(13, 61,7)}; an array of", "two dimensions"}},
         {{"score", "/dev/zero.npy", "study/quick"}, {"/dev/zero.npy"}},
         {{"compare", "other.mat", "scene.mat"}, {"scene.mat"}},
         {{"compare", "ran", "ran", "-o", "x.png"}, {"two image files"}},
@@ -149,6 +151,12 @@ static void unfit_images_are_refused(void **state)
     size_t size;
     char *bytes = bytes_read("rows.npy", &size);
     bytes_write("short.npy", bytes, 128 + 12);
+    memset(bytes + 128 + 40, 0xff, 4);
+    bytes_write("nan.npy", bytes, size);
+    char *shape = strstr(bytes + 10, "(13, 61)");
+    assert_non_null(shape);
+    memcpy(shape, "(13, 61,7)}", 11);
+    bytes_write("three.npy", bytes, size);
     free(bytes);
     assert_all_refused(refusals, COUNT_OF(refusals));
     struct outcome twice = program_run(
