@@ -1,7 +1,6 @@
 /* Predicted against measured errors (predicted.h). */
 #include "advise/predicted.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +12,7 @@
 #include "imaging/spec.h"
 #include "measure/timing.h"
 #include "show/plot.h"
-#include "sweep/sweep_group.h"
+#include "sweep/sweep_tables.h"
 
 /* An image that is predicted. */
 struct prediction {
@@ -27,16 +26,6 @@ struct predictions {
     struct prediction *list; /* [count] */
     int count;
 };
-
-/* Is it as it was measured? */
-static bool scene_same(const struct csv *csv, const struct scene *scene, const char *name)
-{
-    char key[300], hash[17];
-    snprintf(key, sizeof key, "scene %s", name);
-    snprintf(hash, sizeof hash, "%016" PRIx64, scene->hash);
-    const char *measured = csv_comment(csv, key);
-    return measured && strcmp(measured, hash) == 0;
-}
 
 static enum status row_predict(const struct scene *scene, const struct measurement *row,
                                struct predictions *predictions)
@@ -63,19 +52,14 @@ static enum status row_predict(const struct scene *scene, const struct measureme
     return status == STATUS_FAILED ? status : STATUS_OK;
 }
 
-/* The rows of one scene; `given` is the scene itself, or NULL. */
-static enum status scene_predict(const struct results *results, const char *name, const struct scene *given,
+/* The rows of one scene. */
+static enum status scene_predict(const struct results *results, const struct scene *scene,
                                  struct predictions *predictions)
 {
-    struct scene loaded = {0};
-    if (!given && scene_load(name, SCENE_DIRECTORY, &loaded) != STATUS_OK)
-        return STATUS_OK;
-    const struct scene *scene = given ? given : &loaded;
     enum status status = STATUS_OK;
-    for (int k = 0; k < results->csv.row_count && status == STATUS_OK && scene_same(&results->csv, scene, name); k++)
-        if (strcmp(results->measurements[k].scene, name) == 0)
+    for (int k = 0; k < results->csv.row_count && status == STATUS_OK; k++)
+        if (strcmp(results->measurements[k].scene, scene->name) == 0)
             status = row_predict(scene, &results->measurements[k], predictions);
-    scene_free(&loaded);
     return status;
 }
 
@@ -150,6 +134,8 @@ enum status predicted_write(const char *directory, const struct scene *scenes, i
 {
     struct results results;
     struct predictions predictions = {NULL, 0};
+    const char **names = NULL;
+    int count = 0;
     char path[4200];
     snprintf(path, sizeof path, "%s/measurements.csv", directory);
     *any = false;
@@ -159,15 +145,20 @@ enum status predicted_write(const char *directory, const struct scene *scenes, i
     predictions.list = calloc((size_t)results.csv.row_count + 1, sizeof *predictions.list);
     if (!predictions.list)
         status = status_set(STATUS_FAILED, "%s: no memory for %d rows", directory, results.csv.row_count);
-    for (int row = 0; row < results.csv.row_count && status == STATUS_OK; row++)
-        if (!scene_seen(&results, row)) {
-            const char *name = results.measurements[row].scene;
-            status = scene_predict(&results, name, scene_find(scenes, scene_count, name), &predictions);
-        }
+    if (status == STATUS_OK)
+        status = scenes_find(&results, &names, &count);
+    for (int k = 0; k < count && status == STATUS_OK; k++) {
+        struct scene loaded;
+        const struct scene *scene = scene_measured(&results.csv, scenes, scene_count, names[k], &loaded);
+        if (scene)
+            status = scene_predict(&results, scene, &predictions);
+        scene_free(&loaded);
+    }
     *any = predictions.count > 0;
     if (status == STATUS_OK && *any)
         status = files_write(directory, &predictions);
     free(predictions.list);
+    free(names);
     results_free(&results);
     return status;
 }

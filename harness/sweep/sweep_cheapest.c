@@ -1,11 +1,12 @@
-/* The cheapest sufficient setting: cheapest.csv of a sweep (sweep_group.h). */
+/* The cheapest sufficient setting: cheapest.csv of a sweep (sweep_tables.h). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "text/shown_text.h"
+#include "text/text_append.h"
 #include "show/table.h"
-#include "sweep/sweep_group.h"
+#include "sweep/sweep_tables.h"
 
 enum { TIES_TOLD = 3 };
 
@@ -19,40 +20,42 @@ static const struct {
     {"wk", "wk_", "omega-k, by"},
 };
 
-static bool is_candidate(const struct group *group, int k, double below, const char *begins)
+static bool is_candidate(const struct measurement *row, double below, const char *begins)
 {
-    return group->error[k] <= below && strncmp(group->points.list[k].row->algorithm, begins, strlen(begins)) == 0;
+    return row->error <= below && strncmp(row->algorithm, begins, strlen(begins)) == 0;
 }
 
-/* The cheapest row with an error up to `below`, of equal ones the fastest; -1 without such a row. */
-static int cheapest_find(const struct group *group, int c, double below, const char *begins)
+/* The cheapest row with an error up to `below`, of equal ones the fastest; NULL without such a row. */
+static const struct measurement *cheapest_find(const struct points *points, int c, double below, const char *begins)
 {
-    int best = -1;
-    for (int k = 0; k < group->points.count; k++)
-        if (is_candidate(group, k, below, begins)
-            && measurement_is_cheaper(group->points.list[k].row, best < 0 ? NULL : group->points.list[best].row,
-                                      sweep_costs[c].offset, below))
-            best = k;
+    const struct measurement *best = NULL;
+    for (int k = 0; k < points->count; k++)
+        if (is_candidate(points->list[k].row, below, begins)
+            && measurement_is_cheaper(points->list[k].row, best, sweep_costs[c].offset, below))
+            best = points->list[k].row;
     return best;
 }
 
-/* The settings whose interval overlaps the cheapest one's, separated by "; "; returns their number. */
-static int ties_find(const struct group *group, int best, double below, const char *begins, char *text, size_t size)
+/* The settings whose times' interval overlaps the cheapest one's, separated by "; ". */
+static void ties_find(const struct points *points, const struct measurement *best, double below, const char *begins,
+                      char *text, size_t size)
 {
+    double low, high, best_low, best_high;
     int count = 0;
     *text = '\0';
-    for (int k = 0; k < group->points.count && group->high[best] > group->low[best]; k++) {
+    measurement_interval(best, &best_low, &best_high);
+    for (int k = 0; k < points->count && best_high > best_low; k++) {
+        const struct measurement *row = points->list[k].row;
         char spec[512];
-        const size_t used = strlen(text);
-        if (k == best || !is_candidate(group, k, below, begins) || group->low[k] > group->high[best])
+        measurement_interval(row, &low, &high);
+        if (row == best || !is_candidate(row, below, begins) || low > best_high)
             continue;
-        measurement_spec(group->points.list[k].row, spec, sizeof spec);
+        measurement_spec(row, spec, sizeof spec);
         if (count++ < TIES_TOLD)
-            snprintf(text + used, size - used, "%s%s", used ? "; " : "", spec);
+            text_append(text, size, "%s%s", *text ? "; " : "", spec);
     }
     if (count > TIES_TOLD)
-        snprintf(text + strlen(text), size - strlen(text), "; %d more", count - TIES_TOLD);
-    return count;
+        text_append(text, size, "; %d more", count - TIES_TOLD);
 }
 
 static void row_tell(const struct measurement *row, const char *threshold, const char *ties)
@@ -77,31 +80,30 @@ static void row_tell(const struct measurement *row, const char *threshold, const
 }
 
 /* Does the terminal show the family? That of all algorithms always, another one only among several and by run time. */
-static bool is_told(const struct group *group, size_t family, int c)
+static bool is_told(const struct points *points, size_t family, int c)
 {
+    const char *begins = families[family].begins;
     bool others = false;
-    for (int k = 0; k < group->points.count; k++)
-        others |=
-            strcmp(group->points.list[k].row->algorithm, "reference") != 0
-            && strncmp(group->points.list[k].row->algorithm, families[family].begins, strlen(families[family].begins))
-                   != 0;
-    return group->told && (family == 0 || (others && c == SWEEP_RUN_TIME));
+    for (int k = 0; k < points->count; k++) {
+        const char *name = points->list[k].row->algorithm;
+        others |= strcmp(name, "reference") != 0 && strncmp(name, begins, strlen(begins)) != 0;
+    }
+    return family == 0 || (others && c == SWEEP_RUN_TIME);
 }
 
 /* For each decade from 1 down to the smallest that any setting of the family reaches. */
-static void family_write(struct group *group, size_t family, int c, FILE *file)
+static void family_write(const struct points *points, size_t family, int c, bool told, FILE *file)
 {
     const char *begins = families[family].begins;
-    const bool told = is_told(group, family, c);
-    int best = cheapest_find(group, c, 1, begins);
-    if (best >= 0 && told)
+    const struct measurement *row = cheapest_find(points, c, 1, begins);
+    if (row && told)
         printf("  %s %s\n      below      time speed-up     MFLOP    error  setting\n", families[family].title,
                sweep_costs[c].title);
-    for (int decade = 0; best >= 0; decade--, best = cheapest_find(group, c, pow(10, decade), begins)) {
-        const struct measurement *row = group->points.list[best].row;
-        char threshold[16], ties[1800];
+    for (int decade = 0; row; decade--, row = cheapest_find(points, c, pow(10, decade), begins)) {
+        char threshold[16], ties[1800] = "";
         snprintf(threshold, sizeof threshold, "1e%d", decade);
-        ties_find(group, best, pow(10, decade), begins, ties, sizeof ties);
+        if (c == SWEEP_RUN_TIME)
+            ties_find(points, row, pow(10, decade), begins, ties, sizeof ties);
         if (told)
             row_tell(row, threshold, ties);
         csv_write_fields(file,
@@ -115,13 +117,11 @@ static void family_write(struct group *group, size_t family, int c, FILE *file)
     }
 }
 
-void cheapest_write(struct group *group, FILE *file)
+void cheapest_write(const struct points *points, bool told, FILE *file)
 {
-    if (group->told)
-        printf("\n%s: the cheapest setting for each decade of error\n", group->points.scene);
+    if (told)
+        printf("\n%s: the cheapest setting for each decade of error\n", points->scene);
     for (size_t family = 0; family < sizeof families / sizeof *families; family++)
-        for (int c = 0; c < SWEEP_COSTS; c++) {
-            group_values(group, &sweep_costs[c]);
-            family_write(group, family, c, file);
-        }
+        for (int c = 0; c < SWEEP_COSTS; c++)
+            family_write(points, family, c, told && is_told(points, family, c), file);
 }

@@ -1,10 +1,9 @@
-/* How the error falls along a series of settings: slopes.csv of a sweep (sweep_tables.h, sweep_group.h). */
+/* How the error falls along a series of settings: slopes.csv of a sweep (sweep_tables.h). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "text/shown_text.h"
-#include "sweep/sweep_group.h"
 #include "sweep/sweep_tables.h"
 
 static const double floor_tolerance = 0.05;
@@ -44,8 +43,8 @@ int floor_find(int count, const double *error)
 }
 
 /* The straight line through a part of a series. rates, errors: [count] of that part. */
-static void slope_write(const struct group *group, const struct point *points, const double *rates,
-                        const double *errors, int count, const char *part, FILE *file)
+static void slope_write(const struct point *points, const double *rates, const double *errors, int count,
+                        const char *part, bool told, FILE *file)
 {
     const struct measurement *row = points->row;
     struct line_fit fit = line_fit(count, rates, errors);
@@ -58,7 +57,7 @@ static void slope_write(const struct group *group, const struct point *points, c
                      (double[]){points[0].setting.value, points[count - 1].setting.value, rates[0], rates[count - 1],
                                 fit.points, fit.slope, fit.first, fit.last, fit.residual_log10},
                      9, true);
-    if (!group->told)
+    if (!told)
         return;
     snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *points->setting.rest ? ":" : "", points->setting.rest,
              strcmp(row->precision, "double") == 0 ? " double" : "");
@@ -72,27 +71,31 @@ static void slope_write(const struct group *group, const struct point *points, c
 
 /* The parts of each series: the falling error and the floor; without a floor the finest half, for the method's
    asymptotic order. Settings without upsampling count by themselves. */
-void slopes_write(struct group *group, FILE *file)
+enum status slopes_write(const struct points *points, bool told, FILE *file)
 {
-    if (group->told)
+    double *rates = calloc(2 * (size_t)points->count + 1, sizeof *rates), *errors = rates + points->count;
+    if (!rates)
+        return status_set(STATUS_FAILED, "%s: no memory for %d rows", points->scene, points->count);
+    if (told)
         printf("\n%s: slopes of log error against log rate (beta + 1, or the setting itself)\n"
                "  %-36s %-8s %-18s %6s  %6s  %7s  %7s  %8s\n",
-               group->points.scene, "series", "part", "setting", "points", "slope", "first", "last", "residual");
-    for (int s = 0; s < group->points.series_count; s++) {
-        const struct point *points = &group->points.list[group->points.series[s].first];
-        const int count = group->points.series[s].count;
-        double *rates = group->cost, *errors = group->error;
-        if (!*points->setting.name)
+               points->scene, "series", "part", "setting", "points", "slope", "first", "last", "residual");
+    for (int s = 0; s < points->series_count; s++) {
+        const struct point *list = &points->list[points->series[s].first];
+        const int count = points->series[s].count;
+        if (!*list->setting.name)
             continue;
         for (int k = 0; k < count; k++) {
-            rates[k] = isnan(points[k].rate) ? points[k].setting.value : points[k].rate;
-            errors[k] = points[k].row->error;
+            rates[k] = isnan(list[k].rate) ? list[k].setting.value : list[k].rate;
+            errors[k] = list[k].row->error;
         }
         const int floor = floor_find(count, errors), finest = count / 2;
-        slope_write(group, points, rates, errors, floor, "falling", file);
+        slope_write(list, rates, errors, floor, "falling", told, file);
         if (floor == count && count - finest >= 3)
-            slope_write(group, points + finest, rates + finest, errors + finest, count - finest, "finest", file);
+            slope_write(list + finest, rates + finest, errors + finest, count - finest, "finest", told, file);
         if (floor < count)
-            slope_write(group, points + floor, rates + floor, errors + floor, count - floor, "floor", file);
+            slope_write(list + floor, rates + floor, errors + floor, count - floor, "floor", told, file);
     }
+    free(rates);
+    return STATUS_OK;
 }

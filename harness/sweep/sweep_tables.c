@@ -15,54 +15,76 @@
 #include "show/table.h"
 #include "files/paths.h"
 #include "files/text_file.h"
-#include "sweep/sweep_group.h"
+
+const struct sweep_cost sweep_costs[SWEEP_COSTS] = {
+    [SWEEP_RUN_TIME] = {"run_s", "run time", offsetof(struct measurement, run_s)},
+    [SWEEP_FLOPS] = {"flops", "counted FLOPs", offsetof(struct measurement, flops)},
+};
 
 /* The front, then the settings that only the noise of the times keeps off it. */
-static void fronts_write(struct group *group, FILE *file)
+static enum status fronts_write(const struct points *points, FILE *file)
 {
-    for (int c = 0; c < SWEEP_COSTS; c++) {
-        group_values(group, &sweep_costs[c]);
-        const int size = pareto_front_find(group->points.count, group->cost, group->error, group->front);
-        const int ties =
-            pareto_ties_find(group->points.count, group->low, group->high, group->error, size, group->front);
+    const size_t most = (size_t)points->count + 1;
+    double *cost = calloc(4 * most, sizeof *cost), *error = cost + most, *low = error + most, *high = low + most;
+    int *front = calloc(most, sizeof *front);
+    for (int c = 0; c < SWEEP_COSTS && cost && front; c++) {
+        for (int k = 0; k < points->count; k++) {
+            const struct measurement *row = points->list[k].row;
+            cost[k] = low[k] = high[k] = *(const double *)((const char *)row + sweep_costs[c].offset);
+            error[k] = row->error;
+            if (c == SWEEP_RUN_TIME)
+                measurement_interval(row, &low[k], &high[k]);
+        }
+        const int size = pareto_front_find(points->count, cost, error, front);
+        const int ties = pareto_ties_find(points->count, low, high, error, size, front);
         for (int k = 0; k < size + ties; k++) {
-            const struct measurement *row = group->points.list[group->front[k]].row;
+            const struct measurement *row = points->list[front[k]].row;
             csv_write_fields(file,
                              (const char *const[]){row->scene, sweep_costs[c].name, row->algorithm, row->options,
                                                    row->precision, NULL},
-                             (double[]){group->cost[group->front[k]], row->error, k >= size}, 3, true);
+                             (double[]){cost[front[k]], row->error, k >= size}, 3, true);
         }
     }
+    const bool whole = cost && front;
+    free(cost);
+    free(front);
+    return whole ? STATUS_OK : status_set(STATUS_FAILED, "%s: no memory for %zu rows", points->scene, most);
+}
+
+const struct scene *scene_measured(const struct csv *csv, const struct scene *scenes, int count, const char *name,
+                                   struct scene *loaded)
+{
+    const struct scene *scene = NULL;
+    char key[300], hash[17];
+    *loaded = (struct scene){0};
+    for (int k = 0; k < count; k++)
+        scene = strcmp(scenes[k].name, name) == 0 ? &scenes[k] : scene;
+    if (!scene && scene_load(name, SCENE_DIRECTORY, loaded) != STATUS_OK)
+        return NULL;
+    scene = scene ? scene : loaded;
+    snprintf(key, sizeof key, "scene %s", name);
+    snprintf(hash, sizeof hash, "%016" PRIx64, scene->hash);
+    const char *measured = csv_comment(csv, key);
+    return measured && strcmp(measured, hash) == 0 ? scene : NULL;
 }
 
 /* The rules for the upsampling rate at this scene's numbers (BP22 Eq. (20), ZP15's lambda/8), and two error laws:
    the envelope's phase at the band's edge at rate 1, which falls as 1/rate, and the floor of linear interpolation.
    That is its loss 1 - sinc^2(f/fs), about (pi f/fs)^2/3, rms over a flat band |f| <= B/2:
-   pi^2 (B/fs)^2/(12 sqrt 5). A scene that is missing or has changed since has none. */
-static void rules_write(struct group *group, const struct scene *given, const struct csv *csv, FILE *file)
+   pi^2 (B/fs)^2/(12 sqrt 5). */
+static void rules_write(const struct scene *scene, bool told, FILE *file)
 {
-    struct scene scene = {0};
-    char key[300], hash[17];
-    if (!given && scene_load(group->points.scene, SCENE_DIRECTORY, &scene) != STATUS_OK)
-        return;
-    given = given ? given : &scene;
-    snprintf(key, sizeof key, "scene %s", group->points.scene);
-    snprintf(hash, sizeof hash, "%016" PRIx64, given->hash);
-    const char *measured = csv_comment(csv, key);
-    if (measured && strcmp(measured, hash) == 0) {
-        const struct acquisition *a = &given->acquisition;
-        double lambda = a->sound_speed / a->fc, bin = a->sound_speed / (2 * a->fs);
-        double resolution = a->tx_length > 0 ? a->tx_length / 2 : NAN, fraction = a->bandwidth / a->fs;
-        double bp22 = 2 * bin * 10 * lambda / (resolution * resolution), zp15 = 2 * a->fc / a->fs;
-        csv_write_fields(file, (const char *const[]){group->points.scene, NULL},
-                         (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
-                                    M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction},
-                         7, true);
-        if (group->told)
-            printf("\n%s: upsampling rates required by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n",
-                   group->points.scene, bp22, zp15);
-    }
-    scene_free(&scene);
+    const struct acquisition *a = &scene->acquisition;
+    double lambda = a->sound_speed / a->fc, bin = a->sound_speed / (2 * a->fs);
+    double resolution = a->tx_length > 0 ? a->tx_length / 2 : NAN, fraction = a->bandwidth / a->fs;
+    double bp22 = 2 * bin * 10 * lambda / (resolution * resolution), zp15 = 2 * a->fc / a->fs;
+    csv_write_fields(file, (const char *const[]){scene->name, NULL},
+                     (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
+                                M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction},
+                     7, true);
+    if (told)
+        printf("\n%s: upsampling rates required by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n", scene->name,
+               bp22, zp15);
 }
 
 enum { FRONTS, CHEAPEST, SLOPES, RULES, TABLES };
@@ -81,29 +103,21 @@ static const struct {
                "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor"},
 };
 
-/* `given` is the scene itself, or NULL. */
-static enum status scene_tables(const struct results *results, const char *scene, const struct scene *given, bool told,
+static enum status scene_tables(const struct results *results, const char *name, const struct scene *scene, bool told,
                                 struct text_file *files)
 {
-    struct group group;
-    enum status status = group_fill(results, scene, &group);
-    group.told = told;
-    if (status == STATUS_OK && group.points.count > 0) {
-        fronts_write(&group, files[FRONTS].stream);
-        cheapest_write(&group, files[CHEAPEST].stream);
-        rules_write(&group, given, &results->csv, files[RULES].stream);
-        slopes_write(&group, files[SLOPES].stream);
+    struct points points;
+    enum status status = points_find(results, name, &points);
+    if (status == STATUS_OK && points.count > 0) {
+        status = fronts_write(&points, files[FRONTS].stream);
+        cheapest_write(&points, told, files[CHEAPEST].stream);
+        if (scene)
+            rules_write(scene, told, files[RULES].stream);
+        if (status == STATUS_OK)
+            status = slopes_write(&points, told, files[SLOPES].stream);
     }
-    group_free(&group);
+    points_free(&points);
     return status;
-}
-
-bool scene_seen(const struct results *results, int row)
-{
-    for (int k = 0; k < row; k++)
-        if (strcmp(results->measurements[k].scene, results->measurements[row].scene) == 0)
-            return true;
-    return false;
 }
 
 static enum status table_open(const char *directory, int table, const struct csv *csv, struct text_file *file)
@@ -123,34 +137,30 @@ static enum status table_open(const char *directory, int table, const struct csv
     return STATUS_OK;
 }
 
-const struct scene *scene_find(const struct scene *scenes, int count, const char *name)
-{
-    for (int k = 0; k < count; k++)
-        if (strcmp(scenes[k].name, name) == 0)
-            return &scenes[k];
-    return NULL;
-}
-
 enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count, const char *told)
 {
     struct results results;
     struct text_file files[TABLES];
-    int opened = 0;
+    const char **names = NULL;
+    int opened = 0, name_count = 0;
     char path[4096];
     snprintf(path, sizeof path, "%s/measurements.csv", directory);
     enum status status = results_read(path, &results);
+    if (status == STATUS_OK)
+        status = scenes_find(&results, &names, &name_count);
     while (opened < TABLES && status == STATUS_OK) {
         status = table_open(directory, opened, &results.csv, &files[opened]);
         opened += status == STATUS_OK;
     }
-    for (int row = 0; row < results.csv.row_count && status == STATUS_OK; row++)
-        if (!scene_seen(&results, row)) {
-            const char *scene = results.measurements[row].scene;
-            status = scene_tables(&results, scene, scene_find(scenes, scene_count, scene),
-                                  told && strcmp(told, scene) == 0, files);
-        }
+    for (int k = 0; k < name_count && status == STATUS_OK; k++) {
+        struct scene loaded;
+        const struct scene *scene = scene_measured(&results.csv, scenes, scene_count, names[k], &loaded);
+        status = scene_tables(&results, names[k], scene, told && strcmp(told, names[k]) == 0, files);
+        scene_free(&loaded);
+    }
     for (int k = 0; k < opened; k++)
         status = text_file_close(&files[k], status);
+    free(names);
     results_free(&results);
     return status;
 }
