@@ -4,7 +4,13 @@
 
 #include "measure/session.h"
 #include "measure/timing.h"
-#include "bench/fft_seconds.h"
+
+/* FFTW's time, s, best of five. Which is faster depends on the machine's caches. */
+struct fft_seconds {
+    double plan;   /* by one two-dimensional plan */
+    double strips; /* rows by themselves, columns by strips that are copied to and fro */
+    double best;   /* the smaller of both */
+};
 
 struct bench_line {
     const char *name, *scene; /* borrowed; no name: none is printed */

@@ -74,3 +74,10 @@ enum status command_compare(const struct task *task)
     diff_free(&diff);
     return status;
 }
+
+/* The command `measure`, which `compare --ab` starts. */
+enum status command_measure(const struct task *task)
+{
+    (void)task;
+    return ab_worker_serve();
+}

@@ -24,4 +24,8 @@ extern const struct ab_effort ab_usual;
 enum status ab_run(const char *old, const char *new, const char *const *scenes, int scene_count,
                    const struct spec *specs, int spec_count, const struct ab_effort *effort, struct diff *diff);
 
+/* The other end, which ab_run starts in each program: answer requests of standard input on standard output until the
+   input ends (ab_worker.c). Errors: STATUS_FAILED without memory. */
+enum status ab_worker_serve(void);
+
 #endif

@@ -19,7 +19,7 @@
 #include "scene/simulate.h"
 #include "echoes/echo_data.h"
 #include "files/paths.h"
-#include "gate/ab_worker.h"
+#include "gate/ab.h"
 
 enum { JOBS_MOST = 256 };
 

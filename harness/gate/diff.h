@@ -69,7 +69,7 @@ int diff_count(const struct diff *diff, enum verdict verdict);
 enum status diff_status(const struct diff *diff);
 void diff_free(struct diff *diff);
 
-/* Readable text: remarks, all findings but the same ones, grouped by what may have caused them (diff_groups.h),
+/* Readable text: remarks, all findings but the same ones, grouped by what may have caused them,
    counts. */
 void diff_print(const struct diff *diff, FILE *stream);
 /* The same for a comment of a CI, as Markdown; at most 100 findings, the worst first. Errors: of text_file. */

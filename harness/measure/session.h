@@ -3,11 +3,11 @@
 #define SASBENCH_MEASURE_SESSION_H
 
 #include "choice/choice.h"
-#include "measure/control.h"
 #include "measure/darkness.h"
 #include "results/measurement.h"
 #include "scene/scene.h"
 #include "imaging/spec.h"
+#include "measure/timing.h"
 
 /* Wall time, s. */
 struct spent {

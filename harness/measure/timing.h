@@ -2,8 +2,28 @@
 #ifndef SASBENCH_MEASURE_TIMING_H
 #define SASBENCH_MEASURE_TIMING_H
 
-#include "measure/control.h"
+#include "backprojection/pairs/turned.h"
 #include "imaging/spec.h"
+#include "measure/scalar_loop.h"
+
+enum { CONTROL_RUNS = 2 }; /* the loop's runs in turn; the faster one is free of most interruptions */
+
+/* The scalar reference loop's time beside measurements of one problem. Made by control_begin, released by control_end, which accepts zeroes. The first measurement chooses the pairs. */
+struct control {
+    struct problem
+        problem; /* once open, with turned grids turned back: the loop's rows and columns are along x and r only */
+    struct turned_problem turned;
+    const struct echoes *echoes;
+    struct scalar_loop loop;
+    bool open;
+    double seconds[CONTROL_RUNS]; /* a pair's time, last measured */
+    double measured;              /* seconds_now() at that time */
+    double spent_s;               /* so far, on all measurements */
+};
+
+/* `echoes` are in float, whatever the problem's precision; they and what the problem points to are borrowed. */
+struct control control_begin(const struct problem *problem, const struct echoes *echoes);
+void control_end(struct control *control);
 
 struct timing {
     double plan_s;             /* s, planning, once */
@@ -40,7 +60,7 @@ enum effort { EFFORT_NONE, EFFORT_BRIEF, EFFORT_WHOLE };
    echoes, which detects an image kept from an earlier run; the echoes are restored. The control is timed before the
    runs, unless it just was, and after them; EFFORT_BRIEF omits the latter. With `samples` this is one of
    TIMING_ROUNDS rounds, each a part of EFFORT_WHOLE; times are of all runs so far. *image is the finished one
-   (imaging_finish), freed by the caller. Errors: as imaging_open, imaging_execute, imaging_finish, control_measure,
+   (imaging_finish), freed by the caller. Errors: as imaging_open, imaging_execute, imaging_finish, problem_turn_back,
    and STATUS_FAILED for a time that is not above 0, an image of the negated echoes that is not the negated image,
    and more processors than threads; *image is then empty. */
 enum status timing_measure(const struct spec *spec, const struct problem *problem, struct echoes *echoes,
