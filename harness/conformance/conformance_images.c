@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/pairs/pairs.h"
 #include "conformance/conformance.h"
 #include "echoes/echo_data.h"
 #include "imaging/imaging.h"
@@ -17,17 +16,11 @@
 static void check_work(const struct conformance *c, const char *place, const struct problem *problem, const void *plan)
 {
     const struct work work = c->algorithm->work(plan);
-    const struct acquisition *a = problem->acquisition;
-    const double pairs = pairs_count(problem), samples = a->samples + a->pulse_length;
-    const double records = (double)a->pings * a->receivers;
-    promise(c, place, work.pairs == 0 || work.pairs == pairs,
-            "work.pairs is %.9g, must be 0 or what pairs_count counts, %.9g", work.pairs, pairs);
-    /* At least a product a sample where no pairs are summed. Not twice the work of summing every sample for each pair
-       and transforming each record: ours claim .001 to .8 of that. */
-    const double least = work.pairs > 0 ? 8 * work.pairs : 2 * records * a->samples;
-    const double most = 2 * (pairs * 8 * samples + records * 5 * samples * log2(samples));
-    promise(c, place, work.flops >= least && work.flops <= most, "work.flops is %.3g, must be from %.3g to %.3g",
-            work.flops, least, most);
+    const struct work_bounds bounds = work_bounds(problem, &work);
+    promise(c, place, work.pairs == 0 || work.pairs == bounds.pairs,
+            "work.pairs is %.9g, must be 0 or what pairs_count counts, %.9g", work.pairs, bounds.pairs);
+    promise(c, place, work.flops >= bounds.flops_least && work.flops <= bounds.flops_most,
+            "work.flops is %.3g, must be from %.3g to %.3g", work.flops, bounds.flops_least, bounds.flops_most);
     promise(c, place, *work.engine, "work.engine is \"%s\", must name the way that was chosen", work.engine);
 }
 

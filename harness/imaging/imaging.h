@@ -37,4 +37,10 @@ void imaging_close(struct imaging *imaging);
 enum status imaging_form(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
                          struct image *image, struct work *work);
 
+/* What an algorithm may say of its work on a problem: all pairs (pairs_count) or none, and FLOPs from least to most. */
+struct work_bounds {
+    double pairs, flops_least, flops_most;
+};
+struct work_bounds work_bounds(const struct problem *problem, const struct work *work);
+
 #endif

@@ -62,8 +62,6 @@ static enum status quality_fill(const struct session *session, struct outcome *o
     struct measurement *row = &outcome->row;
     char *reason = outcome->reason;
     const size_t reason_size = sizeof outcome->reason;
-    if (!image_is_finite(&outcome->image))
-        return status_set(STATUS_FAILED, "the image has pixels that are not finite");
     int points = session->scene->point_count, defined = 0, unmeasured = 0;
     double *values = calloc(3 * (size_t)points + 1, sizeof *values);
     outcome->targets = calloc((size_t)points * AXES * DEFINITIONS + 1, sizeof *outcome->targets);

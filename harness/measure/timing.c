@@ -10,7 +10,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "backprojection/pairs/pairs.h"
 #include "common/clock.h"
 #include "echoes/echo_data.h"
 #include "imaging/imaging.h"
@@ -302,18 +301,25 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
         status = imaging_finish(&imaging, echoes, image);
     imaging_close(&imaging);
     if (status == STATUS_OK) {
-        double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(&control->problem);
+        const struct work *work = &timing->work;
+        const struct work_bounds bounds = work_bounds(problem, work);
         double sorted[TIMING_CONTROLS];
         timing->drift = after / before - 1;
         for (int k = 0; k < samples->controls; k++)
             sorted[k] = samples->control[k];
-        timing->control_s = median(sorted, samples->controls) * pairs;
+        timing->control_s = median(sorted, samples->controls) * bounds.pairs;
         samples_evaluate(samples, timing);
         if (timing->run_min_s <= 0 || timing->control_s <= 0)
             status = status_set(STATUS_FAILED,
                                 "a run of %s takes %g s, of the scalar reference loop %g s: the system's "
                                 "clock stands still",
                                 spec->algorithm->name, timing->run_min_s, timing->control_s);
+        else if (work->pairs != 0 && work->pairs != bounds.pairs)
+            status = status_set(STATUS_FAILED, "%s: its work has %.9g pairs, must be 0 or %.9g", spec->algorithm->name,
+                                work->pairs, bounds.pairs);
+        else if (!(work->flops >= bounds.flops_least && work->flops <= bounds.flops_most))
+            status = status_set(STATUS_FAILED, "%s: its work has %.3g FLOPs, must be %.3g to %.3g",
+                                spec->algorithm->name, work->flops, bounds.flops_least, bounds.flops_most);
     }
     if (status != STATUS_OK)
         image_free(image);
