@@ -63,6 +63,8 @@ static struct timing timed(enum effort effort, struct timing_samples *samples)
 static const double slack_s = 1e-11; /* what is lost of a second of a clock at 1000 s */
 static const double steady[] = {0.008, 0.008, 0.008, 0.008};
 static const double pairs_timed = FAKE_PAIRS;
+#define QUICK_PAIRS 114192 /* of study/quick */
+#define CONTROL_S   (QUICK_PAIRS * 0.01 / FAKE_PAIRS)
 
 /* --- What timing makes of runs -------------------------------------------------------------------------------- */
 
@@ -161,15 +163,16 @@ static void control_is_for_all_pairs(void **state)
 {
     (void)state;
     static const double control[] = {0.016, 0.008, 0.009, 0.012};
-    tell(&(struct told){{0.2}, .pairs = 1e7}, control);
+    const double pairs = QUICK_PAIRS;
+    assert_close(pairs_of_quick(), pairs, 0);
+    tell(&(struct told){{0.2}, .pairs = pairs}, control);
     struct timing timing = timed(EFFORT_WHOLE, NULL);
     assert_int_equal(fake.controls, 4);
-    assert_close(timing.control_s, 0.0105 / pairs_timed * 1e7, 1e7 * slack_s / pairs_timed);
+    assert_close(timing.control_s, 0.0105 / pairs_timed * pairs, pairs * slack_s / pairs_timed);
     assert_close(timing.drift, 9. / 8 - 1, 1e-8);
     assert_close(timing.spent_s, 1.2, 10 * slack_s); /* is not of the runs */
     tell(&(struct told){{0.2}}, control);
     timing = timed(EFFORT_WHOLE, NULL);
-    const double pairs = pairs_of_quick();
     assert_close(timing.control_s, 0.0105 / pairs_timed * pairs, pairs * slack_s / pairs_timed);
 }
 
@@ -178,10 +181,10 @@ static void control_is_recent(void **state)
 {
     (void)state;
     static const double control[] = {0.01, 0.02, 0.04, 0.05, 0.06, 0.07};
-    tell(&(struct told){{0.1}, .pairs = pairs_timed}, control);
+    tell(&(struct told){{0.1}, .pairs = QUICK_PAIRS}, control);
     struct timing timing = timed(EFFORT_BRIEF, NULL);
     assert_int_equal(fake.controls, 2);
-    assert_close(timing.control_s, 0.015, slack_s);
+    assert_close(timing.control_s, 1.5 * CONTROL_S, 1e-7 * CONTROL_S);
     assert_close(timing.drift, 0, 0);
     fake.on = true;
     timing = timed(EFFORT_BRIEF, NULL); /* 0.2 s later, and as long */
@@ -190,11 +193,11 @@ static void control_is_recent(void **state)
     fake_clock_pass(0.9);
     timing = timed(EFFORT_BRIEF, NULL);
     assert_int_equal(fake.controls, 4);
-    assert_close(timing.control_s, 0.045, slack_s);
-    tell(&(struct told){{1.1}, .pairs = pairs_timed}, control); /* a run of more than that second */
+    assert_close(timing.control_s, 4.5 * CONTROL_S, 1e-7 * CONTROL_S);
+    tell(&(struct told){{1.1}, .pairs = QUICK_PAIRS}, control); /* a run of more than that second */
     timing = timed(EFFORT_BRIEF, NULL);
     assert_int_equal(fake.controls, 4);
-    assert_close(timing.control_s, 0.03, slack_s);
+    assert_close(timing.control_s, 3 * CONTROL_S, 1e-7 * CONTROL_S);
     assert_close(timing.drift, 3, 1e-8);
 }
 
@@ -218,7 +221,7 @@ static void rounds_are_one_measurement(void **state)
     struct timing timing;
     for (int round = 0; round < TIMING_ROUNDS; round++) {
         const double s = 0.02 * slowness[round];
-        tell(&(struct told){{7, s}, .waited = round == 1 ? 0.5 : 0, .pairs = pairs_timed}, control + 4 * round);
+        tell(&(struct told){{7, s}, .waited = round == 1 ? 0.5 : 0, .pairs = QUICK_PAIRS}, control + 4 * round);
         timing = timed(EFFORT_WHOLE, &samples);
     }
     /* 0.5/3 s each: 9, 3 and 5 runs. */
@@ -226,7 +229,7 @@ static void rounds_are_one_measurement(void **state)
     assert_close(timing.run_s, 0.02, slack_s);
     assert_close(timing.run_min_s, 0.02, slack_s);
     assert_close(timing.run_q3_s, 0.04, slack_s);
-    assert_close(timing.control_s, 0.02, slack_s);
+    assert_close(timing.control_s, 2 * CONTROL_S, 1e-7 * CONTROL_S);
     assert_close(timing.waited, 0.5 * 0.18 / (0.18 + 0.18 + 0.2), 1e-8);
 }
 
@@ -301,27 +304,26 @@ static void noise_is_told(void **state)
         const char *found = strstr(outcome.row.reason, "warning: times");
         assert_string_equal(found ? found : "", wanted);
         check_table(&outcome.row, *wanted ? "200 ms~" : "200 ms",
-                    cell_significant(outcome.row.control_s / 0.2, "x").text, "3.23 GF/s");
+                    cell_significant(outcome.row.control_s / 0.2, "x").text, "0.32 GF/s");
         outcome_free(&outcome);
     }
 }
 
-/* 1.024e9 pairs in 0.2 s are 5.12 Gp/s; the control needs 39.1 s for them. Without pairs 6.46e8 operations are
-   3.23 GF/s, and the control's time is for the problem's pairs. */
+/* Pairs are Gp/s, without pairs 6.46e7 operations in 0.02 s are 3.23 GF/s; the control's time is for the problem's
+   pairs. */
 static void speed_up_and_rate(void **state)
 {
     (void)state;
-    const double pair_s = 0.01 / pairs_timed;
     static const double control[] = {0.01, 0.01, 0.01, 0.01};
     for (int k = 0; k < 2; k++) {
         struct outcome outcome;
-        tell(&(struct told){{5, 0.19, 0.21, 0.2}, .pairs = k == 0 ? 1.024e9 : 0}, control);
+        const double s = k == 0 ? QUICK_PAIRS / 5.12e9 : 0.02;
+        tell(&(struct told){{5, 0.95 * s, 1.05 * s, s}, .pairs = k == 0 ? QUICK_PAIRS : 0}, control);
         outcome_measure(&session, &spec, EFFORT_WHOLE, NULL, &outcome);
         fake.on = false;
-        const double pairs = k == 0 ? 1.024e9 : pairs_of_quick();
-        assert_close(outcome.row.control_s, pair_s * pairs, 1e-9 * pair_s * pairs);
-        assert_close(outcome.row.flops, 6.46e8, 0);
-        check_table(&outcome.row, "200 ms", k == 0 ? "195x" : cell_significant(pair_s * pairs / 0.2, "x").text,
+        assert_close(outcome.row.control_s, CONTROL_S, 1e-9 * CONTROL_S);
+        assert_close(outcome.row.flops, 6.46e7, 0);
+        check_table(&outcome.row, k == 0 ? "22.3 us" : "20 ms", cell_significant(CONTROL_S / s, "x").text,
                     k == 0 ? "5.12 Gp/s" : "3.23 GF/s");
         outcome_free(&outcome);
     }
@@ -336,12 +338,13 @@ static void false_times_are_no_result(void **state)
         struct told told;
         const char *reason; /* NULL: it is a result */
     } cases[] = {
-        {{{0}, .pairs = 1e6}, "a run of telling takes 0 s, "},
-        {{{-0.2}, .pairs = 1e6}, "a run of telling takes -0.2 s, "},
+        {{{0}, .pairs = QUICK_PAIRS}, "a run of telling takes 0 s, "},
+        {{{-0.2}, .pairs = QUICK_PAIRS}, "a run of telling takes -0.2 s, "},
         {{{0.2}}, "of the scalar reference loop 0 s: the system's clock stands still"},
-        {{{0.2}, .pairs = 1e6, .processors = 2}, NULL},
-        {{{0.2}, .pairs = 1e6, .keeps = true}, "the image of the negated echoes is not the negated image (run 2)"},
-        {{{0.2}, .pairs = 1e6, .processors = 2.5}, "telling kept 2.5 processors busy with --threads 2"}};
+        {{{0.2}, .pairs = QUICK_PAIRS, .processors = 2}, NULL},
+        {{{0.2}, .pairs = QUICK_PAIRS, .keeps = true},
+         "the image of the negated echoes is not the negated image (run 2)"},
+        {{{0.2}, .pairs = QUICK_PAIRS, .processors = 2.5}, "telling kept 2.5 processors busy with --threads 2"}};
     const double first = *(const float *)session.echoes[PRECISION_FLOAT].samples;
     omp_set_num_threads(2);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -378,7 +381,7 @@ static void figures_reach_the_report(void **state)
     static const double control[] = {0.008, 0.01, 0.012, 0.01};
     const double readings_s = 20e-6, threads = omp_get_max_threads();
     struct results results;
-    tell(&(struct told){{3, 0.23, 0.2, 0.18, 0.2, 0.23}, .pairs = 1.024e9, .busy = true}, control);
+    tell(&(struct told){{3, 0.23, 0.2, 0.18, 0.2, 0.23}, .pairs = QUICK_PAIRS, .busy = true}, control);
     fake.tick = 1000;
     const struct measurement row = run_row(false, &results);
     assert_string_equal(row.status, "ok");
@@ -393,15 +396,18 @@ static void figures_reach_the_report(void **state)
     double low, high;
     measurement_interval(&row, &low, &high);
     assert_true(low == row.run_q1_s && high == row.run_q3_s);
-    assert_close(row.control_s, 1.024e9 / pairs_timed * 0.01, 1e-6);
-    assert_close(row.pairs, 1.024e9, 0);
-    assert_close(row.flops, 6.46e8, 0);
+    assert_close(row.control_s, CONTROL_S, 1e-6 * CONTROL_S);
+    assert_close(row.pairs, QUICK_PAIRS, 0);
+    assert_close(row.flops, 6.46e7, 0);
     assert_string_equal(row.stages, "compress=0.05;focus=0.15");
     assert_non_null(strstr(row.reason, "times scatter: the middle half of 5 runs spans 15 % of the median"));
     assert_int_equal(report_write(folder), STATUS_OK);
     char *page = support_read_cells("report.html");
     assert_non_null(page);
-    assert_non_null(strstr(page, "\n|telling|200 ms~ (-0.0, +15.0 %)|195x|4 ms|0.646|"));
+    char line[100];
+    snprintf(line, sizeof line, "\n|telling|200 ms~ (-0.0, +15.0 %%)|%s|4 ms|0.0646|",
+             cell_significant(CONTROL_S / 0.2, "x").text);
+    assert_non_null(strstr(page, line));
     free(page);
     results_free(&results);
 }
@@ -412,7 +418,7 @@ static void busy_waiting_takes_its_time(void **state)
     (void)state;
     const double least = 0.003, begin = seconds_now();
     struct results results;
-    told = (struct told){{least}, .pairs = 1e6, .busy = true};
+    told = (struct told){{least}, .pairs = QUICK_PAIRS, .busy = true};
     const struct measurement row = run_row(true, &results);
     assert_true(row.runs >= 5 * TIMING_ROUNDS / 3 && row.run_min_s >= least && row.run_s >= row.run_min_s);
     assert_true(row.run_min_s * row.runs <= seconds_now() - begin);
