@@ -145,15 +145,37 @@ enum trait {
     TRAIT_EXACT = 1,          /* the image equals `reference` to 1e-8 in double */
     TRAIT_ANY_TRACK = 2,      /* images any track in space, not only uniform straight ones */
     TRAIT_APERTURE_LIMIT = 4, /* honours aperture_limit pixel by pixel */
-    TRAIT_WINDOW = 8          /* forms a window of an image; `reads` lists the pings it needs */
+    TRAIT_WINDOW = 8,         /* forms a window of an image; `reads` lists the pings it needs */
+    TRAIT_AREA = 16           /* removes what lies outside the scene's target area: far from the image of all echoes */
+};
+
+/* Settings that `auto` chooses among, as in a SPEC: fixed ones "key=value,key=value", and the values of one more key,
+   "value value"; `budget`: the planner sets it. Each value is slower than the one before. */
+struct candidate_family {
+    const char *fixed, *varied, *values; /* fixed NULL ends a table */
+};
+
+/* How an algorithm reads a record between its samples, where it images pair by pair. */
+enum record_reading {
+    READING_NONE, /* it does not, or by a rule of its own */
+    READING_NEAREST,
+    READING_LINEAR,
+    READING_SINC,
+    READING_FITTED,    /* taps of least squared error over a band */
+    READING_BAND,      /* the band-limited record itself */
+    READING_POLYNOMIAL /* around each sample the polynomial nearest to the band-limited record (least squares) */
 };
 
 struct algorithm {
     const char *name, *summary, *reference; /* reference: paper and equations */
-    const char *origin;  /* what identifies the code of one that the program does not contain, for provenance, a line */
-    unsigned traits;     /* of enum trait */
-    size_t options_size; /* of the options struct; 0 without params */
+    const char *origin; /* what identifies the code of one that the program does not contain, for provenance, a line */
+    unsigned traits;    /* of enum trait */
+    enum record_reading reading; /* for images in extended precision */
+    double extreme_error; /* with a reading: relative L2, at fs = 2 B, measured over the extreme scenes, with room */
+    size_t options_size;  /* of the options struct; 0 without params */
     const struct param *params; /* NULL-terminated; NULL without options */
+    const char *const *gated;   /* settings that the baseline measures beside the defaults; NULL-terminated, or NULL */
+    const struct candidate_family *candidates; /* with a forecast: what `auto` chooses among; NULL: nothing */
     const void *method; /* its engine's description of it, passed to the callbacks; NULL: its callbacks are its own */
 
     /* Fill list[room] with the conditions of the problem, before any work, and return the number. `plan` refuses by the

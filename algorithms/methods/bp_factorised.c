@@ -188,6 +188,14 @@ static void destroy(void *plan)
     free(planned);
 }
 
+static const struct candidate_family candidates[] = {
+    {"", "error", "budget"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"stages=1,base=4", "stages=2,base=2,factor=4,error=1e-3",
+                                    "stages=2,base=2,factor=4,error=1e-3,precision=double", NULL};
+
 const struct algorithm bp_factorised = {
     .name = "bp_factorised",
     .summary = "fast factorised back projection, subapertures on polar grids",
@@ -195,6 +203,8 @@ const struct algorithm bp_factorised = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .conditions = conditions,
     .promise = promise,
     .forecast = forecast,

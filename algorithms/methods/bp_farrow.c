@@ -53,13 +53,27 @@ static enum status make(const struct problem *problem, const void *options, stru
 
 static const struct bp_method method = {make, NULL};
 
+static const struct candidate_family candidates[] = {
+    {"", "degree", "2 3 4 5 6 7 8 9"},
+    {"factor=2", "degree", "2 3 4 5 6"},
+    {"engine=general", "degree", "2 3 4 5"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"degree=3", "degree=6,factor=2,precision=double", "degree=5,engine=general",
+                                    "degree=5,engine=general,precision=double", NULL};
+
 const struct algorithm bp_farrow = {
     .name = "bp_farrow",
     .summary = "back projection, polynomials between samples by Farrow branches",
     .reference = "Farrow, ISCAS 1988; Abramowitz and Stegun Eq. 10.1.47",
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
+    .reading = READING_POLYNOMIAL,
+    .extreme_error = 1e-3,
     .options_size = sizeof(struct options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     .promise = promise,
     BP_CALLBACKS,

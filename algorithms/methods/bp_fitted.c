@@ -50,13 +50,27 @@ static enum status make(const struct problem *problem, const void *options, stru
 
 static const struct bp_method method = {make, NULL};
 
+static const struct candidate_family candidates[] = {
+    {"", "taps", "2 4 6 8 10 12 16"},
+    {"factor=2", "taps", "2 4 6 8 12"},
+    {"factor=4", "taps", "2 4 6 8"},
+    {"engine=general", "taps", "2 4 6 8 10 12"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"taps=6,factor=2,precision=double", "taps=6,factor=2,engine=general", NULL};
+
 const struct algorithm bp_fitted = {
     .name = "bp_fitted",
     .summary = "back projection, taps fitted to the band by least squares",
     .reference = "Oetken, Parks, Schuessler, IEEE Trans. ASSP 23 (1975)",
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
+    .reading = READING_FITTED,
+    .extreme_error = 1e-3,
     .options_size = sizeof(struct options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     BP_CALLBACKS,
 };

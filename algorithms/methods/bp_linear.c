@@ -50,13 +50,27 @@ static enum status make(const struct problem *problem, const void *options, stru
 
 static const struct bp_method method = {make, NULL};
 
+static const struct candidate_family candidates[] = {
+    {"", "beta", "1 2 4 8 16 32"},
+    {"preemphasis=on", "beta", "2 4 8 16 32"},
+    {"engine=general", "beta", "2 8"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"beta=2", "preemphasis=on", "engine=general", "engine=general,precision=double",
+                                    NULL};
+
 const struct algorithm bp_linear = {
     .name = "bp_linear",
     .summary = "back projection, linear upsampling by beta, then the nearest",
     .reference = "BP22 Eqs. (6)-(8)",
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
+    .reading = READING_LINEAR,
+    .extreme_error = 0.12,
     .options_size = sizeof(struct options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     BP_CALLBACKS,
 };

@@ -19,13 +19,24 @@ static enum status make(const struct problem *problem, const void *options, stru
 
 static const struct bp_method method = {make, NULL};
 
+static const struct candidate_family candidates[] = {
+    {"", "", ""},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"engine=general", "engine=general,precision=double", NULL};
+
 const struct algorithm bp_nearest = {
     .name = "bp_nearest",
     .summary = "back projection, nearest sample",
     .reference = "BP22 Eq. (8), ZP15",
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
+    .reading = READING_NEAREST,
+    .extreme_error = 0.15,
     .options_size = sizeof(struct bp_options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     BP_CALLBACKS,
 };

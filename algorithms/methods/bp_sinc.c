@@ -53,13 +53,32 @@ static enum status make(const struct problem *problem, const void *options, stru
 
 static const struct bp_method method = {make, NULL};
 
+static const struct candidate_family candidates[] = {
+    {"window=none", "taps", "4 8 16"},
+    {"window=kaiser", "taps", "4 8 16 32"},
+    {"window=kaiser_band", "taps", "4 6 8 10 12 16 32"},
+    {"window=kaiser_band,engine=general", "taps", "4 6 8"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"taps=4,engine=general",
+                                    "taps=16,window=kaiser",
+                                    "taps=16,window=kaiser,precision=double",
+                                    "taps=16,window=kaiser,engine=general",
+                                    "taps=16,window=kaiser,engine=general,precision=double",
+                                    NULL};
+
 const struct algorithm bp_sinc = {
     .name = "bp_sinc",
     .summary = "back projection, truncated sinc kernel",
     .reference = "BP22 section 4 (traditional BP), ZP15",
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
+    .reading = READING_SINC,
+    .extreme_error = 0.06,
     .options_size = sizeof(struct options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     BP_CALLBACKS,
 };

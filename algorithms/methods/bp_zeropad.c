@@ -29,13 +29,24 @@ static enum status make(const struct problem *problem, const void *options, stru
 
 static const struct bp_method method = {make, NULL};
 
+static const struct candidate_family candidates[] = {
+    {"", "factor", "2 4 8 16 32 64"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"factor=3", "factor=3,engine=general", NULL};
+
 const struct algorithm bp_zeropad = {
     .name = "bp_zeropad",
     .summary = "back projection, zero padding in frequency by a factor, then the nearest",
     .reference = "ZP15 Eqs. (5)-(7)",
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
+    .reading = READING_NEAREST,
+    .extreme_error = 0.03,
     .options_size = sizeof(struct options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     BP_CALLBACKS,
 };

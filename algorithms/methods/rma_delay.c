@@ -24,12 +24,23 @@ static const struct rma_method method = {
     .spectrum = spectrum_compensated,
 };
 
+static const struct candidate_family candidates[] = {
+    {"taps=8", "terms", "1 2"},
+    {"", "terms", "1 2"},
+    {"taps=24", "terms", "2 3"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"terms=1", "taps=24,terms=3,stolt=16,precision=double", NULL};
+
 const struct algorithm rma_delay = {
     .name = "rma_delay",
     .summary = "range migration after delays that make the receivers monostatic",
     .reference = "this project; the exact spectrum of LBF21 Eqs. (8) and (9)",
     .options_size = sizeof(struct rma_options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     RMA_CALLBACKS,
 };

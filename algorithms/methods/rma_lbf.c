@@ -22,12 +22,22 @@ static const struct rma_method method = {
     .interpolations = 1,
 };
 
+static const struct candidate_family candidates[] = {
+    {"", "limit", "0.785 0.1 0.01"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"variant=printed",     "blocks=16", "blocks=16,spacing=uniform",
+                                    "blocks=16,blend=off", "stolt=4",   NULL};
+
 const struct algorithm rma_lbf = {
     .name = "rma_lbf",
     .summary = "range migration by Loffeld's bistatic formula",
     .reference = "LBF21 Eqs. (3) to (5), section IV",
     .options_size = sizeof(struct rma_options),
     .params = rma_params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     RMA_CALLBACKS,
 };

@@ -18,12 +18,21 @@ static const struct rma_method method = {
     .interpolations = 1,
 };
 
+static const struct candidate_family candidates[] = {
+    {"", "limit", "0.785 0.1 0.01"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"blocks=16,stolt=16", "blocks=16,stolt=16,precision=double", NULL};
+
 const struct algorithm rma_numeric = {
     .name = "rma_numeric",
     .summary = "range migration with the exact spectrum, found numerically",
     .reference = "LBF21 Eqs. (8) and (9), section IV",
     .options_size = sizeof(struct rma_options),
     .params = rma_params + 1,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     RMA_CALLBACKS,
 };

@@ -21,12 +21,21 @@ static const struct rma_method method = {
     .interpolations = 2,
 };
 
+static const struct candidate_family candidates[] = {
+    {"", "limit", "0.785 0.1"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"blocks=16", NULL};
+
 const struct algorithm rma_pca = {
     .name = "rma_pca",
     .summary = "range migration after phase-centre approximation",
     .reference = "LBF21 Eq. (6), section IV",
     .options_size = sizeof(struct rma_options),
     .params = rma_params + 1,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     RMA_CALLBACKS,
 };

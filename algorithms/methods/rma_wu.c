@@ -17,12 +17,21 @@ static const struct rma_method method = {
     .interpolations = 1,
 };
 
+static const struct candidate_family candidates[] = {
+    {"", "limit", "0.785 0.1"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"blocks=16", NULL};
+
 const struct algorithm rma_wu = {
     .name = "rma_wu",
     .summary = "range migration after reference range history (a working definition of Wu's method)",
     .reference = "LBF21 [22], section IV",
     .options_size = sizeof(struct rma_options),
     .params = rma_params + 1,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     RMA_CALLBACKS,
 };

@@ -22,12 +22,15 @@ static const struct param params[] = {
 
 static const struct wk_method method = {.name = "wk_classic"};
 
+static const char *const gated[] = {"unfold=stuff", "unfold=baseband", "taps=16,precision=double", NULL};
+
 const struct algorithm wk_classic = {
     .name = "wk_classic",
     .summary = "omega-k, squint unfolded along the track's own azimuth",
     .reference = "SQ18 section 1, [3], [4]",
     .options_size = sizeof(struct wk_options),
     .params = params,
+    .gated = gated,
     .method = &method,
     .promise = rma_promise,
     .forecast = wk_forecast,

@@ -19,12 +19,16 @@ static const struct param params[] = {
 
 static const struct wk_method method = {.name = "wk_polar", .filters = true};
 
+static const char *const gated[] = {"subapertures=1", "subapertures=1,curvature=on,precision=double", NULL};
+
 const struct algorithm wk_polar = {
     .name = "wk_polar",
     .summary = "omega-k behind the polar-format spatial filter of a target area",
     .reference = "PF05 Eqs. (5) to (16), corrected",
+    .traits = TRAIT_AREA,
     .options_size = sizeof(struct wk_options),
     .params = params,
+    .gated = gated,
     .method = &method,
     WK_CALLBACKS,
 };

@@ -18,12 +18,21 @@ static const struct param params[] = {
 
 static const struct wk_method method = {.name = "wk_squint", .rotates = true};
 
+static const struct candidate_family candidates[] = {
+    {"", "taps", "4 6 8"},
+    {.fixed = NULL},
+};
+
+static const char *const gated[] = {"taps=16,pad=2,precision=double", "pad=1", NULL};
+
 const struct algorithm wk_squint = {
     .name = "wk_squint",
     .summary = "omega-k in axes turned by the squint",
     .reference = "SQ18 Eqs. (3) to (13), corrected",
     .options_size = sizeof(struct wk_options),
     .params = params,
+    .gated = gated,
+    .candidates = candidates,
     .method = &method,
     .promise = rma_promise,
     .forecast = wk_forecast,

@@ -7,38 +7,6 @@
 
 #include "contract/param.h"
 
-/* THE list: an algorithm with a forecast, its fixed settings, and the values of one parameter; `budget`: the planner
-   sets it. */
-static const struct {
-    const char *algorithm, *fixed, *varied, *values; /* "key=value,key=value", "key", "value value" */
-} families[] = {
-    {"bp_nearest", "", "", ""},
-    {"bp_linear", "", "beta", "1 2 4 8 16 32"},
-    {"bp_linear", "preemphasis=on", "beta", "2 4 8 16 32"},
-    {"bp_zeropad", "", "factor", "2 4 8 16 32 64"},
-    {"bp_farrow", "", "degree", "2 3 4 5 6 7 8 9"},
-    {"bp_farrow", "factor=2", "degree", "2 3 4 5 6"},
-    {"bp_sinc", "window=none", "taps", "4 8 16"},
-    {"bp_sinc", "window=kaiser", "taps", "4 8 16 32"},
-    {"bp_sinc", "window=kaiser_band", "taps", "4 6 8 10 12 16 32"},
-    {"bp_fitted", "", "taps", "2 4 6 8 10 12 16"},
-    {"bp_fitted", "factor=2", "taps", "2 4 6 8 12"},
-    {"bp_fitted", "factor=4", "taps", "2 4 6 8"},
-    {"bp_linear", "engine=general", "beta", "2 8"},
-    {"bp_farrow", "engine=general", "degree", "2 3 4 5"},
-    {"bp_sinc", "window=kaiser_band,engine=general", "taps", "4 6 8"},
-    {"bp_fitted", "engine=general", "taps", "2 4 6 8 10 12"},
-    {"bp_factorised", "", "error", "budget"},
-    {"rma_delay", "taps=8", "terms", "1 2"},
-    {"rma_delay", "", "terms", "1 2"},
-    {"rma_delay", "taps=24", "terms", "2 3"},
-    {"rma_lbf", "", "limit", "0.785 0.1 0.01"},
-    {"rma_pca", "", "limit", "0.785 0.1"},
-    {"rma_wu", "", "limit", "0.785 0.1"},
-    {"rma_numeric", "", "limit", "0.785 0.1 0.01"},
-    {"wk_squint", "", "taps", "4 6 8"},
-};
-
 /* Set a parameter of the table by its text. False where it is unknown, or does not accept the value. */
 static bool setting_store(const struct algorithm *algorithm, void *options, const char *key, const char *value)
 {
@@ -74,17 +42,17 @@ bool candidate_set_error(struct candidate *candidate, double error)
     return false;
 }
 
-/* One candidate of a family; false where the algorithm does not accept its settings. */
-static bool candidate_fill(int family, const char *value, struct candidate *candidate)
+/* One candidate; false where the algorithm does not accept its settings. */
+static bool candidate_fill(const struct algorithm *algorithm, const struct candidate_family *family, int number,
+                           const char *value, struct candidate *candidate)
 {
-    const struct algorithm *algorithm = algorithm_find(families[family].algorithm);
-    const char *varied = families[family].varied;
+    const char *varied = family->varied;
     char fixed[48], *key, *rest = fixed;
-    if (!algorithm || !algorithm->forecast || algorithm->options_size > sizeof candidate->options)
+    if (!algorithm->forecast || algorithm->options_size > sizeof candidate->options)
         return false;
-    *candidate = (struct candidate){.algorithm = algorithm, .family = family};
+    *candidate = (struct candidate){.algorithm = algorithm, .family = number};
     options_fill(algorithm, candidate->options);
-    snprintf(fixed, sizeof fixed, "%s", families[family].fixed);
+    snprintf(fixed, sizeof fixed, "%s", family->fixed);
     while ((key = strsep(&rest, "=")) && *key)
         if (!candidate_set(candidate, key, strsep(&rest, ",")))
             return false;
@@ -94,15 +62,16 @@ static bool candidate_fill(int family, const char *value, struct candidate *cand
 
 int candidates_fill(struct candidate *list)
 {
-    int count = 0;
-    for (size_t k = 0; k < sizeof families / sizeof *families; k++) {
-        char values[80], *rest = values;
-        snprintf(values, sizeof values, "%s", families[k].values);
-        do {
-            const char *value = strsep(&rest, " ");
-            if (count < CANDIDATES_MAX && candidate_fill((int)k, value, &list[count]))
-                count++;
-        } while (rest);
-    }
+    int count = 0, number = 0;
+    for (int k = 0; algorithms[k]; k++)
+        for (const struct candidate_family *f = algorithms[k]->candidates; f && f->fixed; f++, number++) {
+            char values[80], *rest = values;
+            snprintf(values, sizeof values, "%s", f->values);
+            do {
+                const char *value = strsep(&rest, " ");
+                if (count < CANDIDATES_MAX && candidate_fill(algorithms[k], f, number, value, &list[count]))
+                    count++;
+            } while (rest);
+        }
     return count;
 }

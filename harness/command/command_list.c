@@ -16,6 +16,7 @@ static const struct {
     {TRAIT_EXACT, "exact"},
     {TRAIT_ANY_TRACK, "any track"},
     {TRAIT_APERTURE_LIMIT, "aperture limit"},
+    {TRAIT_AREA, "target area alone"},
 };
 
 static void print_traits(const struct algorithm *algorithm)

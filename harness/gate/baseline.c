@@ -11,53 +11,7 @@
 #include "files/paths.h"
 #include "run/progress_line.h"
 
-static const char *const scene_list[] = {"gate/points", "gate/field", "gate/blocks", "gate/squint"};
-enum { SCENES = sizeof scene_list / sizeof *scene_list };
-
-/* Beside every algorithm as it is by default, in both precisions. */
-static const char *const settings[] = {
-    "bp_nearest:engine=general",
-    "bp_nearest:engine=general,precision=double",
-    "bp_linear:beta=2",
-    "bp_linear:preemphasis=on",
-    "bp_linear:engine=general",
-    "bp_linear:engine=general,precision=double",
-    "bp_sinc:taps=4,engine=general",
-    "bp_sinc:taps=16,window=kaiser",
-    "bp_sinc:taps=16,window=kaiser,precision=double",
-    "bp_sinc:taps=16,window=kaiser,engine=general",
-    "bp_sinc:taps=16,window=kaiser,engine=general,precision=double",
-    "bp_zeropad:factor=3",
-    "bp_zeropad:factor=3,engine=general",
-    "bp_farrow:degree=3",
-    "bp_farrow:degree=6,factor=2,precision=double",
-    "bp_farrow:degree=5,engine=general",
-    "bp_farrow:degree=5,engine=general,precision=double",
-    "bp_fitted:taps=6,factor=2,precision=double",
-    "bp_fitted:taps=6,factor=2,engine=general",
-    "bp_factorised:stages=1,base=4",
-    "bp_factorised:stages=2,base=2,factor=4,error=1e-3",
-    "bp_factorised:stages=2,base=2,factor=4,error=1e-3,precision=double",
-    "rma_lbf:variant=printed",
-    "rma_lbf:blocks=16",
-    "rma_lbf:blocks=16,spacing=uniform",
-    "rma_lbf:blocks=16,blend=off",
-    "rma_lbf:stolt=4",
-    "rma_pca:blocks=16",
-    "rma_wu:blocks=16",
-    "rma_numeric:blocks=16,stolt=16",
-    "rma_numeric:blocks=16,stolt=16,precision=double",
-    "rma_delay:terms=1",
-    "rma_delay:taps=24,terms=3,stolt=16,precision=double",
-    "wk_classic:unfold=stuff",
-    "wk_classic:unfold=baseband",
-    "wk_classic:taps=16,precision=double",
-    "wk_squint:taps=16,pad=2,precision=double",
-    "wk_squint:pad=1",
-    "wk_polar:subapertures=1",
-    "wk_polar:subapertures=1,curvature=on,precision=double",
-};
-enum { SETTINGS = sizeof settings / sizeof *settings };
+#define GATE "gate/" /* the folder of its scenes */
 
 /* To a power of ten not above a tenth of the slack, so that rounding elsewhere seldom shows in the text. */
 static void round_values(struct measurement *row, enum precision precision)
@@ -94,26 +48,29 @@ static void specs_free(struct spec *specs, int count)
     free(specs);
 }
 
-/* Every algorithm in both precisions, then the settings above. */
+/* Every algorithm in both precisions, then the settings that it names. */
 static enum status specs_make(struct spec **specs, int *count)
 {
-    int most = SETTINGS;
-    for (int k = 0; algorithms[k]; k++)
+    static const char *const precisions[] = {"precision=float", "precision=double", NULL};
+    int most = 0;
+    for (int k = 0; algorithms[k]; k++) {
         most += 2;
+        for (const char *const *gated = algorithms[k]->gated; gated && *gated; gated++)
+            most++;
+    }
     *count = 0;
-    *specs = calloc((size_t)most, sizeof **specs);
+    *specs = calloc((size_t)most + 1, sizeof **specs);
     if (!*specs)
         return status_set(STATUS_FAILED, "no memory for %d settings", most);
     enum status status = STATUS_OK;
-    for (int k = 0; k < most && status == STATUS_OK; k++) {
-        char text[120];
-        if (k < most - SETTINGS)
-            snprintf(text, sizeof text, "%s:precision=%s", algorithms[k / 2]->name, k % 2 ? "double" : "float");
-        else
-            snprintf(text, sizeof text, "%s", settings[k - (most - SETTINGS)]);
-        status = spec_parse(text, &(*specs)[k]);
-        *count += status == STATUS_OK;
-    }
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; algorithms[k]; k++)
+            for (const char *const *s = pass ? algorithms[k]->gated : precisions; s && *s && status == STATUS_OK; s++) {
+                char text[120];
+                snprintf(text, sizeof text, "%s:%s", algorithms[k]->name, *s);
+                status = spec_parse(text, &(*specs)[*count]);
+                *count += status == STATUS_OK;
+            }
     return status;
 }
 
@@ -152,34 +109,83 @@ static enum status measure_scene(const char *name, const struct spec *specs, int
     return status;
 }
 
-enum status baseline_write(const char *path)
+enum status baseline_accept(const struct algorithm *algorithm, const struct measurement *rows, int count)
 {
-    struct scene scenes[SCENES] = {0};
-    struct content hashes[SCENES];
-    struct spec *specs;
-    int count, row_count = 0;
-    int lock = -1;
-    enum status status = specs_make(&specs, &count);
-    struct measurement *rows = calloc(SCENES * (size_t)count + 1, sizeof *rows);
-    struct reason *reasons = calloc(SCENES * (size_t)count + 1, sizeof *reasons);
-    if (status == STATUS_OK && (!rows || !reasons))
-        status = status_set(STATUS_FAILED, "no memory for %d rows", SCENES * count);
-    if (status == STATUS_OK)
-        status = folder_take_around(path, &lock);
-    for (int k = 0; k < SCENES && status == STATUS_OK; k++) {
-        progress_line(false, "[%d/%d] %s", k + 1, SCENES, scene_list[k]);
-        status = measure_scene(scene_list[k], specs, count, &scenes[k], rows, reasons, &row_count);
+    const struct measurement *refused = NULL;
+    bool imaged = false;
+    for (int k = 0; k < count; k++) {
+        const struct measurement *row = &rows[k];
+        if (strcmp(row->algorithm, algorithm->name) != 0)
+            continue;
+        const bool ok = strcmp(row->status, "ok") == 0;
+        if (strcmp(row->status, "failed") == 0)
+            return status_set(STATUS_FAILED, "no baseline: %s on %s failed: %s", row->algorithm, row->scene,
+                              row->reason);
+        if (ok && !(algorithm->traits & TRAIT_AREA) && !(row->error <= BASELINE_ERROR))
+            return status_set(STATUS_FAILED,
+                              "no baseline: %s:%s in %s has an error of %.3g on %s, must be at most %g: it images "
+                              "something else",
+                              row->algorithm, row->options, row->precision, row->error, row->scene, BASELINE_ERROR);
+        imaged = imaged || ok;
+        refused = ok || refused ? refused : row;
+    }
+    if (imaged)
+        return STATUS_OK;
+    return status_set(STATUS_FAILED,
+                      "no baseline: %s images no scene of scenes/gate (%s: %s); add one that it images to that folder",
+                      algorithm->name, refused ? refused->scene : "none", refused ? refused->reason : "no row");
+}
+
+/* Measure the scenes [count] with all specs, and write the file. */
+static enum status gate_write(const char *path, char **names, int scene_count, const struct spec *specs, int count)
+{
+    const size_t most = (size_t)scene_count * (size_t)count;
+    struct scene *scenes = calloc((size_t)scene_count + 1, sizeof *scenes);
+    struct content *hashes = calloc((size_t)scene_count + 1, sizeof *hashes);
+    struct measurement *rows = calloc(most + 1, sizeof *rows);
+    struct reason *reasons = calloc(most + 1, sizeof *reasons);
+    int row_count = 0;
+    enum status status = STATUS_OK;
+    if (!scenes || !hashes || !rows || !reasons)
+        status = status_set(STATUS_FAILED, "no memory for %zu rows", most);
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++) {
+        progress_line(false, "[%d/%d] %s", k + 1, scene_count, names[k]);
+        status = measure_scene(names[k], specs, count, &scenes[k], rows, reasons, &row_count);
         hashes[k] = content_scene(scenes[k].name, scenes[k].hash);
     }
     progress_line_clear();
+    for (int k = 0; algorithms[k] && status == STATUS_OK; k++)
+        status = baseline_accept(algorithms[k], rows, row_count);
     if (status == STATUS_OK)
         status = measurements_write(path, "baseline: quality and work, no seconds; made by ./sasbench baseline", hashes,
-                                    SCENES, rows, row_count);
-    folder_leave(lock);
+                                    scene_count, rows, row_count);
+    for (int k = 0; k < scene_count && scenes; k++)
+        scene_free(&scenes[k]);
+    free(scenes);
+    free(hashes);
     free(rows);
     free(reasons);
+    return status;
+}
+
+enum status baseline_write(const char *path)
+{
+    struct spec *specs;
+    char **names = NULL;
+    int count, name_count = 0, first = 0, last, lock = -1;
+    enum status status = specs_make(&specs, &count);
+    if (status == STATUS_OK)
+        status = scene_names(SCENE_DIRECTORY, &names, &name_count);
+    if (status == STATUS_OK)
+        status = folder_take_around(path, &lock);
+    while (first < name_count && strncmp(names[first], GATE, strlen(GATE)) != 0)
+        first++;
+    for (last = first; last < name_count && strncmp(names[last], GATE, strlen(GATE)) == 0;)
+        last++;
+    if (status == STATUS_OK)
+        status = gate_write(path, names + first, last - first, specs, count);
+    folder_leave(lock);
+    scene_names_free(names, name_count);
     specs_free(specs, count);
-    for (int k = 0; k < SCENES; k++)
-        scene_free(&scenes[k]);
     return status;
 }

@@ -10,8 +10,13 @@
 void baseline_row(struct session *session, const struct spec *spec, char *reason, size_t reason_size,
                   struct measurement *row);
 
-/* Measure all scenes of the gate with all algorithms and some of their settings, and write the file. Errors: as
-   scene_load, session_open, folder_take_around and measurements_write; nothing is then written. */
+/* Can the rows be an algorithm's baseline? Errors: STATUS_FAILED naming the row that failed, or whose error is above
+   BASELINE_ERROR (without TRAIT_AREA), or the first reason where no scene is imaged. */
+#define BASELINE_ERROR 0.5
+enum status baseline_accept(const struct algorithm *algorithm, const struct measurement *rows, int count);
+
+/* Measure all scenes of scenes/gate with all algorithms and the settings that they name, and write the file. Errors: as
+   scene_load, session_open, folder_take_around, baseline_accept and measurements_write; nothing is then written. */
 enum status baseline_write(const char *path);
 
 /* The path of the reviewed one. */

@@ -342,21 +342,22 @@ static struct value read_position(const struct trace *trace, long double positio
 {
     struct value value = {0};
     switch (trace->reading->kind) {
-    case EXACT_NEAREST:
+    case READING_NEAREST:
         if (trace->reading->upsample > 1)
             return read_band(trace, position / trace->reading->upsample);
         add_tap(trace, position, 1.0L, &value);
         break;
-    case EXACT_LINEAR: {
+    case READING_LINEAR: {
         const long double whole = floorl(position), f = position - whole;
         add_tap(trace, whole, 1.0L - f, &value);
         add_tap(trace, whole + 1.0L, f, &value);
         break;
     }
-    case EXACT_SINC: return read_sinc(trace, position);
-    case EXACT_FITTED: return read_fitted(trace, position * trace->reading->upsample);
-    case EXACT_BAND:
-    case EXACT_POLYNOMIAL: return read_band(trace, position);
+    case READING_SINC: return read_sinc(trace, position);
+    case READING_FITTED: return read_fitted(trace, position * trace->reading->upsample);
+    case READING_NONE: /* never asked for */
+    case READING_BAND:
+    case READING_POLYNOMIAL: return read_band(trace, position);
     }
     return value;
 }
@@ -364,7 +365,7 @@ static struct value read_position(const struct trace *trace, long double positio
 /* At `fine` in upsampled samples, rounded as the method rounds positions, to `whole` of `steps`. */
 static struct value read_rounded(const struct trace *trace, long double fine, long double whole)
 {
-    if (trace->reading->kind == EXACT_POLYNOMIAL)
+    if (trace->reading->kind == READING_POLYNOMIAL)
         return read_polynomial(trace, whole, fine - whole);
     return read_position(trace, whole / trace->reading->phases);
 }
@@ -426,9 +427,9 @@ enum status exact_method(const struct problem *problem, const double complex *sa
     for (size_t i = 0; i < pixels; i++)
         sums[i] = (struct exact_sum){0};
     struct trace trace = {.count = a->samples, .cosine = cosine, .sine = cosine + n, .reading = reading};
-    if (reading->kind == EXACT_POLYNOMIAL)
+    if (reading->kind == READING_POLYNOMIAL)
         trace.gauss = gauss_make(reading->degree);
-    if (reading->kind == EXACT_FITTED)
+    if (reading->kind == READING_FITTED)
         normal_factor(reading, &trace);
     for (int ping = 0; ping < a->pings; ping++)
         for (int m = 0; m < a->receivers; m++) {

@@ -21,14 +21,7 @@ enum { EXACT_TAPS_MOST = 16 };
 
 /* How a method reads a record between its samples: rows as in struct interpolator (backprojection/bp.h). */
 struct exact_reading {
-    enum {
-        EXACT_NEAREST,
-        EXACT_LINEAR,
-        EXACT_SINC,
-        EXACT_FITTED,    /* taps of least squared error over a band */
-        EXACT_BAND,      /* the band-limited record itself */
-        EXACT_POLYNOMIAL /* around each sample the polynomial nearest to the band-limited record (least squares) */
-    } kind;
+    enum record_reading kind;
     int upsample;       /* nearest, fitted, polynomial: by zero padding; else 1 */
     int phases;         /* > 0: positions are rounded to 1/phases of an upsampled sample */
     int degree;         /* polynomial */

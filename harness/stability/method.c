@@ -16,19 +16,7 @@ static double option_value(const struct spec *spec, const char *name, double mis
     return missing;
 }
 
-/* Error laws at fs = 2 B, measured over 52 extreme scenes, with room (docs/stability.md). Range migration promises
-   0.12. */
-static const struct {
-    const char *name;
-    int kind;
-    double error_most;
-} laws[] = {
-    {"reference", EXACT_BAND, 1e-9},   {"bp_nearest", EXACT_NEAREST, 0.15}, {"bp_linear", EXACT_LINEAR, 0.12},
-    {"bp_sinc", EXACT_SINC, 0.06},     {"bp_zeropad", EXACT_NEAREST, 0.03}, {"bp_farrow", EXACT_POLYNOMIAL, 1e-3},
-    {"bp_fitted", EXACT_FITTED, 1e-3},
-};
-enum { LAWS = sizeof laws / sizeof *laws };
-
+/* Of range migration. */
 static const double ERROR_MOST = 0.12, ERROR_KAISER = 0.005;
 /* Range migration cuts swath and band at whole cells. Rounding may choose the next cell, which changes the image by
    at most 2e-6. */
@@ -50,13 +38,10 @@ static void interpolated_delays(const struct spec *spec, const struct acquisitio
 struct method method_of(const struct spec *spec, const char *engine, const struct problem *problem)
 {
     const struct acquisition *acquisition = problem->acquisition;
-    struct method method = {.error_most = ERROR_MOST, .weight = CHOICES, .reading = {.upsample = 1}};
-    for (int k = 0; k < LAWS; k++)
-        if (strcmp(spec->algorithm->name, laws[k].name) == 0) {
-            method.has_reading = true;
-            method.reading.kind = laws[k].kind;
-            method.error_most = laws[k].error_most;
-        }
+    struct method method = {.has_reading = spec->algorithm->reading != READING_NONE,
+                            .error_most = spec->algorithm->extreme_error,
+                            .weight = CHOICES,
+                            .reading = {.kind = spec->algorithm->reading, .upsample = 1}};
     if (!method.has_reading) /* the error setting, if there is one, with room */
         method.error_most = fmin(1.5 * option_value(spec, "error", ERROR_MOST), ERROR_MOST);
     if (option_value(spec, "preemphasis", 0) != 0)
@@ -64,24 +49,24 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
     if (!method.has_reading)
         return method;
     method.weight = 0;
-    if (method.reading.kind == EXACT_BAND && !(acquisition->bandwidth < acquisition->fs))
+    if (method.reading.kind == READING_BAND && !(acquisition->bandwidth < acquisition->fs))
         method.error_most += 1.0 / acquisition->samples; /* one bin stands for both ends of the band */
-    if (method.reading.kind == EXACT_NEAREST || method.reading.kind == EXACT_LINEAR)
+    if (method.reading.kind == READING_NEAREST || method.reading.kind == READING_LINEAR)
         method.reading.phases = (int)option_value(spec, "beta", 0) + 1;
     method.reading.upsample = (int)option_value(spec, "factor", 1);
-    if (method.reading.kind == EXACT_FITTED) {
+    if (method.reading.kind == READING_FITTED) {
         method.reading.upsample = 1 << method.reading.upsample; /* the choice's index */
         method.reading.taps = (int)option_value(spec, "taps", 8);
         method.reading.band = acquisition->bandwidth / (acquisition->fs * method.reading.upsample);
     }
-    if (method.reading.kind == EXACT_POLYNOMIAL) {
+    if (method.reading.kind == READING_POLYNOMIAL) {
         const int choice = (int)option_value(spec, "degree", 0);
         method.reading.phases = 1;
         method.reading.degree =
             choice > 0 ? FARROW_LEAST + choice - 1
                        : farrow_degree_choose(option_value(spec, "error", 0), problem, method.reading.upsample);
     }
-    if (method.reading.kind == EXACT_SINC) {
+    if (method.reading.kind == READING_SINC) {
         method.reading.taps = (int)option_value(spec, "taps", 8);
         const int window = (int)option_value(spec, "window", 0);
         const double left = 1 - acquisition->bandwidth / acquisition->fs;
@@ -91,7 +76,8 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
         }
     }
     /* Cubics through a kernel at 4 of 1024 places a sample; the reference's kernel over four times as many samples. */
-    if (method.reading.kind == EXACT_SINC || method.reading.kind == EXACT_FITTED || method.reading.kind == EXACT_BAND)
+    if (method.reading.kind == READING_SINC || method.reading.kind == READING_FITTED
+        || method.reading.kind == READING_BAND)
         method.weight = 2e-10;
     if (strcmp(engine, "general") == 0)
         interpolated_delays(spec, acquisition, &method);

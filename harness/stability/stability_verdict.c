@@ -291,7 +291,7 @@ struct stability_verdict trial_verdict(const struct trial *trial, int spec)
             verdict.error = worse(verdict.error, relative(trial->scene, image, ideal));
     }
     digits_check(trial, spec, &method, &verdict);
-    if (method.reading.kind == EXACT_BAND && verdict.conditioning > 0)
+    if (method.reading.kind == READING_BAND && verdict.conditioning > 0)
         verdict.error_most += pow(10, DIGITS_MOST) * verdict.conditioning; /* exact methods err by rounding alone */
     flaws_check(&verdict);
     verdict.error_most += ties_of(trial);

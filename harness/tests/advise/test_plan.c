@@ -223,7 +223,7 @@ static void scene_is_judged(void)
                *unseen = strstr(text, "condition pixels_seen");
     assert_true(chosen && ghost && unseen && ghost < chosen && unseen < chosen);
     assert_null(strstr(text, "rma_lbf: condition"));
-    assert_non_null(strstr(text, "rma_delay:taps=8,terms=1: condition axes"));
+    assert_non_null(strstr(text, "rma_lbf:limit=0.785: condition axes"));
     assert_non_null(strstr(text, ": as rma_delay\n"));
     free(text);
     text = plan_printed("study/template", "1e-3");

@@ -49,6 +49,32 @@ static void baseline_holds_without_vector_extensions(void **state)
     check_baseline("baseline");
 }
 
+/* An image of something else, a failure, and an algorithm that images no scene of the gate are no baseline. */
+static void unfit_rows_are_refused(void **state)
+{
+    (void)state;
+    static const struct algorithm mine = {.name = "mine"}, area = {.name = "mine", .traits = TRAIT_AREA};
+    struct measurement rows[3] = {measurement_empty("gate/points", "mine", "taps=8", PRECISION_FLOAT),
+                                  measurement_empty("gate/field", "mine", "taps=8", PRECISION_FLOAT),
+                                  measurement_empty("gate/field", "other", "", PRECISION_FLOAT)};
+    rows[0].status = rows[2].status = "ok";
+    rows[0].error = 0.4;
+    rows[2].error = 2;
+    rows[1].status = "unsupported";
+    rows[1].reason = "the track bends";
+    assert_int_equal(baseline_accept(&mine, rows, 3), STATUS_OK);
+    rows[0].error = 0.6;
+    assert_int_equal(baseline_accept(&mine, rows, 3), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "mine:taps=8 in float has an error of 0.6 on gate/points, must be at "));
+    assert_int_equal(baseline_accept(&area, rows, 3), STATUS_OK);
+    rows[0].error = NAN;
+    assert_int_equal(baseline_accept(&mine, rows, 3), STATUS_FAILED);
+    assert_int_equal(baseline_accept(&mine, rows + 1, 2), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "mine images no scene of scenes/gate (gate/field: the track bends)"));
+    rows[1].status = "failed";
+    assert_int_equal(baseline_accept(&mine, rows, 3), STATUS_FAILED);
+}
+
 /* --- Injected faults ------------------------------------------------------------------------------------------ */
 
 enum fault {
@@ -192,6 +218,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(baseline_holds),
         IN_FOLDER(baseline_holds_without_vector_extensions),
+        cmocka_unit_test(unfit_rows_are_refused),
         IN_FOLDER(faults_are_caught_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -135,22 +135,23 @@ static void methods_are_their_own_sums(void **state)
         const char *spec;
         struct exact_reading reading;
     } methods[] = {
-        {"bp_nearest:exact=true,precision=double", {.kind = EXACT_NEAREST, .upsample = 1, .phases = 1}},
-        {"bp_linear:beta=8,exact=true,precision=double", {.kind = EXACT_LINEAR, .upsample = 1, .phases = 9}},
-        {"bp_sinc:taps=8,exact=true,precision=double", {.kind = EXACT_SINC, .upsample = 1, .taps = 8}},
+        {"bp_nearest:exact=true,precision=double", {.kind = READING_NEAREST, .upsample = 1, .phases = 1}},
+        {"bp_linear:beta=8,exact=true,precision=double", {.kind = READING_LINEAR, .upsample = 1, .phases = 9}},
+        {"bp_sinc:taps=8,exact=true,precision=double", {.kind = READING_SINC, .upsample = 1, .taps = 8}},
         {"bp_sinc:taps=16,window=kaiser,exact=true,precision=double",
-         {.kind = EXACT_SINC, .upsample = 1, .taps = 16, .kaiser = 5}},
-        {"bp_zeropad:factor=8,exact=true,precision=double", {.kind = EXACT_NEAREST, .upsample = 8, .phases = 1}},
-        {"bp_zeropad:factor=3,exact=true,precision=double", {.kind = EXACT_NEAREST, .upsample = 3, .phases = 1}},
+         {.kind = READING_SINC, .upsample = 1, .taps = 16, .kaiser = 5}},
+        {"bp_zeropad:factor=8,exact=true,precision=double", {.kind = READING_NEAREST, .upsample = 8, .phases = 1}},
+        {"bp_zeropad:factor=3,exact=true,precision=double", {.kind = READING_NEAREST, .upsample = 3, .phases = 1}},
         {"bp_farrow:degree=3,exact=true,precision=double",
-         {.kind = EXACT_POLYNOMIAL, .upsample = 1, .phases = 1, .degree = 3}},
+         {.kind = READING_POLYNOMIAL, .upsample = 1, .phases = 1, .degree = 3}},
         {"bp_farrow:degree=8,exact=true,precision=double",
-         {.kind = EXACT_POLYNOMIAL, .upsample = 1, .phases = 1, .degree = 8}},
+         {.kind = READING_POLYNOMIAL, .upsample = 1, .phases = 1, .degree = 8}},
         {"bp_farrow:degree=4,factor=2,exact=true,precision=double",
-         {.kind = EXACT_POLYNOMIAL, .upsample = 2, .phases = 1, .degree = 4}},
-        {"bp_fitted:taps=6,exact=true,precision=double", {.kind = EXACT_FITTED, .upsample = 1, .taps = 6, .band = 0.5}},
+         {.kind = READING_POLYNOMIAL, .upsample = 2, .phases = 1, .degree = 4}},
+        {"bp_fitted:taps=6,exact=true,precision=double",
+         {.kind = READING_FITTED, .upsample = 1, .taps = 6, .band = 0.5}},
         {"bp_fitted:taps=8,factor=4,exact=true,precision=double",
-         {.kind = EXACT_FITTED, .upsample = 4, .taps = 8, .band = 0.125}},
+         {.kind = READING_FITTED, .upsample = 4, .taps = 8, .band = 0.125}},
     };
     struct scene scene;
     struct echoes echoes;
@@ -185,7 +186,7 @@ static void twelfth_digit_is_seen(void **state)
     const size_t pixels = exact_pixels(scene.patch_count, scene.patches);
     struct exact_sum *right = calloc(2 * pixels, sizeof *right), *wrong = right + pixels;
     struct echoes echoes;
-    const struct exact_reading reading = {.kind = EXACT_NEAREST, .upsample = 1, .phases = 1};
+    const struct exact_reading reading = {.kind = READING_NEAREST, .upsample = 1, .phases = 1};
     support_echoes(&scene, &echoes);
     const struct problem problem = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
     assert_int_equal(exact_method(&problem, echoes.samples, &reading, right), STATUS_OK);

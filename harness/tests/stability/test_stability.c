@@ -126,6 +126,8 @@ static struct work planted_work(const void *plan)
 static const struct algorithm planted = {.name = "bp_nearest",
                                          .summary = "nearest neighbour with one fault",
                                          .reference = "",
+                                         .reading = READING_NEAREST,
+                                         .extreme_error = 0.15,
                                          .plan = planted_plan,
                                          .execute = planted_execute,
                                          .work = planted_work,
