@@ -224,7 +224,7 @@ static void scene_is_judged(void)
     assert_true(chosen && ghost && unseen && ghost < chosen && unseen < chosen);
     assert_null(strstr(text, "rma_lbf: condition"));
     assert_non_null(strstr(text, "rma_lbf:limit=0.785: condition axes"));
-    assert_non_null(strstr(text, ": as rma_delay\n"));
+    assert_non_null(strstr(text, ": as rma_lbf\n"));
     free(text);
     text = plan_printed("study/template", "1e-3");
     assert_null(strstr(text, "warning"));
