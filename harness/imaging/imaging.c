@@ -88,13 +88,14 @@ enum status imaging_form(const struct spec *spec, const struct problem *problem,
     return status;
 }
 
-/* At least a product a sample where no pairs are summed. Not twice the work of summing every sample for each pair and
-   transforming each record: ours take .001 to .8 of that. */
+/* Where no pairs are summed at least a product a sample, or a pair where these are fewer: samples that no pixel needs may
+   be left out. Not twice the work of summing every sample for each pair and transforming each record: ours take .001 to
+   .8 of that. */
 struct work_bounds work_bounds(const struct problem *problem, const struct work *work)
 {
     const struct acquisition *a = problem->acquisition;
     const double pairs = pairs_count(problem), samples = a->samples + a->pulse_length;
     const double records = (double)a->pings * a->receivers;
-    return (struct work_bounds){pairs, work->pairs > 0 ? 8 * work->pairs : 2 * records * a->samples,
+    return (struct work_bounds){pairs, work->pairs > 0 ? 8 * work->pairs : 2 * fmin(records * a->samples, pairs),
                                 2 * (pairs * 8 * samples + records * 5 * samples * log2(samples))};
 }
