@@ -19,10 +19,15 @@
 #include "advise/machine_rates.h"
 #include "command/task.h"
 
+static enum status pings_simulate(void *simulation, int first, int count, double complex *samples)
+{
+    return simulation_pings(simulation, first, count, samples);
+}
+
 enum status command_simulate(const struct task *task)
 {
     struct scene scene;
-    struct echoes echoes;
+    struct simulation *simulation = NULL;
     enum status status = output_check("simulate", task->output);
     if (status == STATUS_OK)
         status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
@@ -32,12 +37,13 @@ enum status command_simulate(const struct task *task)
         status = status_set(STATUS_INVALID, "simulate: the echoes of %s are recorded, there is nothing to simulate",
                             scene.name);
     if (status == STATUS_OK)
-        status = scene_simulate(&scene, &echoes);
+        status = simulation_open(&scene, 1, &simulation);
     if (status == STATUS_OK) {
         const struct echo_notes notes = scene_notes(&scene);
-        status = echo_file_write(task->output, &echoes, &notes);
-        echoes_free(&echoes);
+        const struct sample_source source = {simulation_exponent(simulation), pings_simulate, simulation};
+        status = echo_file_stream(task->output, &scene.acquisition, &source, &notes);
     }
+    simulation_close(simulation);
     scene_free(&scene);
     return status;
 }

@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <hdf5.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +14,6 @@
 
 #include "echoes/matvar.h"
 
-enum { HEADS_MOST = 1 << 16 }; /* bytes that HDF5 adds around the numbers, at most */
 static const char head[] = "sasbench tiles 1\n", line_of_tiles[] = "tiles: %dx%d, %d in all\n";
 static const char whole[] = "whole     ", unfinished[] = "unfinished";
 
@@ -51,107 +49,21 @@ static enum status tiles_fail(const struct tiles *tiles, const char *what)
     return status_set(STATUS_FAILED, "%s: %s: %s", tiles->path, what, strerror(errno ? errno : EIO));
 }
 
-/* MATLAB's complex numbers. */
-static hid_t complex_type(enum precision precision)
+/* What is not written by libmatio. */
+static void sets_fill(const struct tiles *tiles, struct set73 sets[2])
 {
-    const bool is_double = precision == PRECISION_DOUBLE;
-    const hid_t part = is_double ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
-    const size_t size = precision_size(precision);
-    const hid_t type = H5Tcreate(H5T_COMPOUND, size);
-    H5Tinsert(type, "real", 0, part);
-    H5Tinsert(type, "imag", size / 2, part);
-    return type;
-}
-
-static bool attribute_write(hid_t set, const char *name, hid_t type, const void *value)
-{
-    const hid_t space = H5Screate(H5S_SCALAR);
-    const hid_t attribute = H5Acreate2(set, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    const bool written = attribute >= 0 && H5Awrite(attribute, type, value) >= 0;
-    H5Aclose(attribute);
-    H5Sclose(space);
-    return written;
-}
-
-static bool class_write(hid_t set, const char *class)
-{
-    const int decode = 2; /* MATLAB's text is of codes of two bytes */
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, strlen(class));
-    const bool written =
-        attribute_write(set, "MATLAB_class", type, class)
-        && (strcmp(class, "char") != 0 || attribute_write(set, "MATLAB_int_decode", H5T_NATIVE_INT, &decode));
-    H5Tclose(type);
-    return written;
-}
-
-/* Create a variable of its full size, contiguous, allocated now and never filled: its numbers lie in one place of the
-   file, and writing them there leaves all else as it is. */
-static bool set_make(hid_t file, const char *name, hid_t type, const hsize_t dims[2], const char *class)
-{
-    const hid_t space = H5Screate_simple(2, dims, NULL), settings = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_layout(settings, H5D_CONTIGUOUS);
-    H5Pset_alloc_time(settings, H5D_ALLOC_TIME_EARLY);
-    H5Pset_fill_time(settings, H5D_FILL_TIME_NEVER);
-    const hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, settings, H5P_DEFAULT);
-    const bool made = set >= 0 && class_write(set, class);
-    H5Dclose(set);
-    H5Pclose(settings);
-    H5Sclose(space);
-    return made;
-}
-
-static bool sets_make(const char *path, const struct tiles *tiles)
-{
-    const bool is_double = tiles->precision == PRECISION_DOUBLE;
-    const hsize_t image[2] = {(hsize_t)tiles->grid.x_count, (hsize_t)tiles->grid.r_count};
-    const hsize_t text[2] = {sizeof unfinished - 1, 1};
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT), type = complex_type(tiles->precision);
-    bool made = file >= 0 && set_make(file, "image", type, image, is_double ? "double" : "single")
-                && set_make(file, "status", H5T_NATIVE_UINT16, text, "char");
-    H5Tclose(type);
-    made = H5Fclose(file) >= 0 && made;
-    return made;
-}
-
-/* Where the numbers of a variable lie; -1: not in one place, or not so many of this type. */
-static off_t set_offset(hid_t file, const char *name, hid_t wanted, hsize_t count)
-{
-    const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set), space = H5Dget_space(set);
-    const haddr_t offset = H5Dget_offset(set);
-    const bool fits = set >= 0 && offset != HADDR_UNDEF && H5Tequal(type, wanted) > 0
-                      && H5Sget_simple_extent_npoints(space) == (hssize_t)count;
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Dclose(set);
-    return fits ? (off_t)offset : -1;
+    sets[0] =
+        (struct set73){"image", false, tiles->precision, 2, {(size_t)tiles->grid.x_count, (size_t)tiles->grid.r_count}};
+    sets[1] = (struct set73){"status", true, PRECISION_FLOAT, 2, {sizeof unfinished - 1, 1}};
 }
 
 static bool offsets_find(const char *path, struct tiles *tiles)
 {
-    const hsize_t pixels = (hsize_t)tiles->grid.x_count * (hsize_t)tiles->grid.r_count;
-    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), type = complex_type(tiles->precision);
-    tiles->image_at = set_offset(file, "image", type, pixels);
-    tiles->status_at = set_offset(file, "status", H5T_NATIVE_UINT16, sizeof unfinished - 1);
-    H5Tclose(type);
-    H5Fclose(file);
+    struct set73 sets[2];
+    sets_fill(tiles, sets);
+    tiles->image_at = set73_find(path, &sets[0]);
+    tiles->status_at = set73_find(path, &sets[1]);
     return tiles->image_at > 0 && tiles->status_at > 0;
-}
-
-static bool write_at(int descriptor, const void *data, size_t size, off_t at)
-{
-    for (const char *next = data; size > 0;) {
-        const ssize_t written = pwrite(descriptor, next, size, at);
-        if (written <= 0 && errno != EINTR)
-            return false;
-        if (written > 0) {
-            next += written;
-            at += written;
-            size -= (size_t)written;
-        }
-    }
-    return true;
 }
 
 static bool status_write(const struct tiles *tiles, const char *text)
@@ -162,24 +74,16 @@ static bool status_write(const struct tiles *tiles, const char *text)
     return write_at(tiles->file, codes, sizeof codes, tiles->status_at) && fdatasync(tiles->file) == 0;
 }
 
-/* Take the room at once: a full disk is found before the work, and before HDF5, which crashes there. */
-static bool room_take(const struct tiles *tiles)
+/* Add what is written tile by tile. */
+static bool sets_add(struct writer *writer)
 {
-    const size_t bytes = (size_t)tiles->grid.x_count * (size_t)tiles->grid.r_count * precision_size(tiles->precision);
-    struct stat file;
-    if (fstat(tiles->file, &file) != 0)
-        return false;
-    errno = posix_fallocate(tiles->file, 0, file.st_size + (off_t)bytes + HEADS_MOST);
-    return errno == 0;
-}
-
-/* Write what is not written tile by tile. */
-static bool sets_add(const char *path, void *with)
-{
-    struct tiles *tiles = with;
+    struct tiles *tiles = writer->with;
+    const char *path = writer->temporary;
+    struct set73 sets[2];
+    sets_fill(tiles, sets);
     tiles->file = open(path, O_RDWR | O_CLOEXEC);
-    return tiles->file >= 0 && room_take(tiles) && sets_make(path, tiles) && offsets_find(path, tiles)
-           && status_write(tiles, unfinished);
+    return tiles->file >= 0 && set73_make(path, tiles->file, &sets[0]) && set73_make(path, tiles->file, &sets[1])
+           && offsets_find(path, tiles) && status_write(tiles, unfinished);
 }
 
 /* The file, with all but its pixels; tiles->file is open then. */

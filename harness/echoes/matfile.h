@@ -40,6 +40,17 @@ void echo_notes_free(struct echo_notes *notes);
    Errors: STATUS_INVALID when the place cannot be written. */
 enum status echo_file_write(const char *path, const struct echoes *echoes, const struct echo_notes *notes);
 
+/* Samples that are made while they are written: some pings, [count][receivers][samples], divided by 2^exponent. */
+struct sample_source {
+    int exponent;
+    enum status (*pings)(void *with, int first, int count, double complex *samples);
+    void *with;
+};
+/* The same file of samples that need not fit into memory: of version 7.3 they are written some pings at a time. Errors:
+   as echo_file_write, and those of the source. */
+enum status echo_file_stream(const char *path, const struct acquisition *acquisition,
+                             const struct sample_source *source, const struct echo_notes *notes);
+
 /* Can a file be made here? Asked before long work. Errors: STATUS_INVALID. */
 enum status matfile_place(const char *path);
 

@@ -106,13 +106,15 @@ struct writer {
     struct _mat_t *mat;
     int count; /* variables written */
     enum status status;
-    /* Adds to the file that libmatio has closed, before it gets its place; false: errno has the reason. NULL: none. */
-    bool (*add)(const char *path, void *with);
+    /* Adds to the file that libmatio has closed, before it gets its place; false: the status is set, or errno has the
+       reason. NULL: none. */
+    bool (*add)(struct writer *writer);
     void *with;
 };
 
 /* Both return the writer's status. Errors: STATUS_INVALID when the place cannot be written, STATUS_FAILED without
    memory. */
+bool writer_fits_v5(size_t largest_variable_bytes);
 enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes);
 enum status writer_close(struct writer *writer);
 
@@ -122,6 +124,22 @@ void write_reals(struct writer *writer, const char *name, size_t rows, size_t co
 /* Complex numbers, in memory row by row [rows][columns], as MATLAB's array `dims`, column by column. */
 void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
                    const void *values, size_t rows, size_t columns);
+
+/* A variable of a version 7.3 file that lies in one place of it, contiguous: writing its numbers there leaves all else
+   as it is. */
+struct set73 {
+    const char *name;
+    bool is_text; /* else complex numbers */
+    enum precision precision;
+    int rank;
+    size_t dims[3]; /* HDF5's order, the reverse of MATLAB's */
+};
+/* Add it, at its full size, to a file that is also open at `descriptor`. False: errno has the reason, or is 0. */
+bool set73_make(const char *path, int descriptor, const struct set73 *set);
+/* Where its numbers lie; -1: there is none, or another. */
+off_t set73_find(const char *path, const struct set73 *set);
+/* pwrite of all. False: errno has the reason. */
+bool write_at(int descriptor, const void *data, size_t size, off_t at);
 
 /* Write the notes, if there are any. */
 struct echo_notes;

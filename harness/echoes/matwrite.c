@@ -53,6 +53,11 @@ static void writer_end(struct writer *writer)
 }
 
 /* Version 5 holds up to 2 GiB a variable. */
+bool writer_fits_v5(size_t largest_variable_bytes)
+{
+    return largest_variable_bytes < ((size_t)1 << 31) - 4096;
+}
+
 enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes)
 {
     *writer = (struct writer){.path = path};
@@ -64,7 +69,7 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
         place_close(&writer->place);
         return writer->status;
     }
-    bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
+    const bool fits_v5 = writer_fits_v5(largest_variable_bytes);
     const bool named = !fits_v5 && place_name(&writer->place, &writer->made); /* HDF5 opens no file without a name */
     /* libmatio opens by name what is there already. */
     snprintf(writer->temporary, sizeof writer->temporary, "/proc/self/fd/%d%s%s",
@@ -151,7 +156,7 @@ enum status writer_close(struct writer *writer)
         write_failed(writer);
     }
     errno = 0;
-    if (writer->status == STATUS_OK && writer->add && !writer->add(writer->temporary, writer->with))
+    if (writer->status == STATUS_OK && writer->add && !writer->add(writer) && writer->status == STATUS_OK)
         write_failed(writer);
     if (writer->status == STATUS_OK
         && !(place_sync(writer->made.descriptor) && place_put(&writer->place, &writer->made)))

@@ -127,14 +127,14 @@ static int transform_length(const struct scene *scene)
     return scene->pulse_kind == PULSE_FLAT ? a->samples : fft_length(a->samples + 2LL * a->pulse_length);
 }
 
-/* The echoes, the replica, a transform for each thread, and as much again for FFTW's plans. */
-static enum status check_memory(const struct scene *scene)
+/* The echoes of `pings`, the replica, a transform for each thread, and as much again for FFTW's plans. */
+static enum status check_memory(const struct scene *scene, int pings)
 {
     const struct acquisition *a = &scene->acquisition;
-    double samples = (double)a->pings * a->receivers * a->samples, transforms = omp_get_max_threads() + 3.0;
+    double samples = (double)pings * a->receivers * a->samples, transforms = omp_get_max_threads() + 3.0;
     char what[400];
     snprintf(what, sizeof what, "the echoes of %.300s, %d samples x %d receivers x %d pings", scene->name, a->samples,
-             a->receivers, a->pings);
+             a->receivers, pings);
     return memory_check((samples + transforms * transform_length(scene)) * sizeof(double complex), what);
 }
 
@@ -278,54 +278,95 @@ static int amplitude_exponent(const struct scene *scene)
     return exponent;
 }
 
+struct simulation {
+    struct scene scene; /* borrowed; as it was flown */
+    struct replica replica;
+    int exponent;
+    double complex *work; /* [threads][replica.length] */
+};
+
+void simulation_close(struct simulation *simulation)
+{
+    if (simulation) {
+        fftw_free(simulation->work);
+        replica_free(&simulation->replica);
+    }
+    free(simulation);
+}
+
+enum status simulation_open(const struct scene *scene, int pings, struct simulation **out)
+{
+    struct simulation *simulation = calloc(1, sizeof *simulation);
+    *out = NULL;
+    if (!simulation)
+        return status_set(STATUS_FAILED, "no memory to simulate %s", scene->name);
+    struct scene *own = &simulation->scene;
+    *own = *scene;
+    if (scene->flown)
+        own->acquisition = *scene->flown;
+    enum status status = check_memory(own, pings);
+    if (status == STATUS_OK)
+        status = replica_make(own, &simulation->replica);
+    if (status == STATUS_OK) {
+        const size_t bins = (size_t)omp_get_max_threads() * (size_t)simulation->replica.length;
+        simulation->exponent = amplitude_exponent(own);
+        simulation->replica.scale = ldexp(1, -simulation->exponent);
+        simulation->work = fftw_malloc(bins * sizeof *simulation->work);
+        if (!simulation->work)
+            status = status_set(STATUS_FAILED, "no memory to simulate records of %d samples", own->acquisition.samples);
+    }
+    if (status == STATUS_OK)
+        *out = simulation;
+    else
+        simulation_close(simulation);
+    return status;
+}
+
+int simulation_exponent(const struct simulation *simulation)
+{
+    return simulation->exponent;
+}
+
+enum status simulation_pings(struct simulation *simulation, int first, int count, double complex *samples)
+{
+    const struct scene *scene = &simulation->scene;
+    const struct acquisition *a = &scene->acquisition;
+    const struct replica *replica = &simulation->replica;
+    const size_t each = (size_t)a->samples;
+    const long long begin = (long long)first * a->receivers, end = begin + (long long)count * a->receivers;
+    long long unfit = end;
+    progress_part((double)first / a->pings, ((double)first + count) / a->pings, (int)(end - begin));
+    memset(samples, 0, (size_t)(end - begin) * each * sizeof *samples);
+#pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
+    for (long long k = begin; k < end; k++) {
+        double complex *record = samples + (size_t)(k - begin) * each;
+        simulate_pair(scene, replica, (int)(k / a->receivers), (int)(k % a->receivers),
+                      simulation->work + (size_t)omp_get_thread_num() * (size_t)replica->length, record);
+        if (k < unfit && !is_finite(record, a->samples))
+            unfit = k;
+        progress_step();
+    }
+    return unfit == end ? STATUS_OK
+                        : status_set(STATUS_INVALID,
+                                     "%s: the echo of receiver %lld in ping %lld is not finite, its numbers must "
+                                     "be less extreme",
+                                     scene->name, unfit % a->receivers + 1, unfit / a->receivers + 1);
+}
+
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
 {
-    if (scene->flown) {
-        struct scene moved = *scene;
-        moved.acquisition = *scene->flown;
-        moved.flown = NULL;
-        enum status simulated = scene_simulate(&moved, echoes);
-        echoes->acquisition = &scene->acquisition;
-        return simulated;
-    }
     const struct acquisition *a = &scene->acquisition;
-    struct replica replica;
-    enum status status = check_memory(scene);
-    if (status == STATUS_OK)
-        status = replica_make(scene, &replica);
+    struct simulation *simulation;
+    enum status status = simulation_open(scene, a->pings, &simulation);
     if (status != STATUS_OK)
         return status;
     status = echoes_allocate(a, PRECISION_DOUBLE, echoes);
-    const int exponent = amplitude_exponent(scene);
-    echoes->exponent = exponent;
-    replica.scale = ldexp(1, -exponent);
-    double complex *work = fftw_malloc((size_t)omp_get_max_threads() * (size_t)replica.length * sizeof *work);
-    if (status == STATUS_OK && !work) {
-        echoes_free(echoes);
-        status = status_set(STATUS_FAILED, "no memory to simulate records of %d samples", a->samples);
-    }
     if (status == STATUS_OK) {
-        double complex *samples = (double complex *)echoes->samples;
-        long long pairs = (long long)a->pings * a->receivers, unfit = pairs;
-        progress_part(0, 1, (int)pairs);
-#pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
-        for (long long k = 0; k < pairs; k++) {
-            simulate_pair(scene, &replica, (int)(k / a->receivers), (int)(k % a->receivers),
-                          work + (size_t)omp_get_thread_num() * (size_t)replica.length,
-                          samples + (size_t)k * (size_t)a->samples);
-            if (k < unfit && !is_finite(samples + (size_t)k * (size_t)a->samples, a->samples))
-                unfit = k;
-            progress_step();
-        }
-        if (unfit < pairs) {
+        echoes->exponent = simulation->exponent;
+        status = simulation_pings(simulation, 0, a->pings, (double complex *)echoes->samples);
+        if (status != STATUS_OK)
             echoes_free(echoes);
-            status = status_set(STATUS_INVALID,
-                                "%s: the echo of receiver %lld in ping %lld is not finite, its numbers must "
-                                "be less extreme",
-                                scene->name, unfit % a->receivers + 1, unfit / a->receivers + 1);
-        }
     }
-    fftw_free(work);
-    replica_free(&replica);
+    simulation_close(simulation);
     return status;
 }

@@ -11,6 +11,14 @@
    STATUS_INVALID for numbers so extreme that an echo is not finite; nothing to free then. */
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes);
 
+/* The same ping by ping: room for `pings` of them is checked. `samples` [count][receivers][samples] are the echoes
+   divided by 2^exponent. Errors: as scene_simulate; nothing to close then. */
+struct simulation;
+enum status simulation_open(const struct scene *scene, int pings, struct simulation **simulation);
+int simulation_exponent(const struct simulation *simulation);
+enum status simulation_pings(struct simulation *simulation, int first, int count, double complex *samples);
+void simulation_close(struct simulation *simulation);
+
 /* The scene's echoes: a copy of recorded ones, or simulated as above. Same errors. */
 enum status scene_echoes(const struct scene *scene, struct echoes *echoes);
 
