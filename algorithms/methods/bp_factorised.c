@@ -44,15 +44,34 @@ static double promise(const void *options)
 }
 
 struct planned {
-    void *direct; /* of back projection, or */
+    struct grid part; /* of the grid: a window's */
+    void *direct;     /* of back projection, or */
     struct factorised *tree;
 };
+
+/* A window has a tree of its own. */
+static struct problem tree_problem(const struct problem *problem, struct grid *part)
+{
+    struct problem own = *problem;
+    if (own.window) {
+        *part = grid_part(own.patches, own.window);
+        own.patches = part;
+        own.window = NULL;
+    }
+    return own;
+}
 
 static int conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                       int room)
 {
     (void)method, (void)options;
     return conditions_sampled(problem, list, room);
+}
+
+static enum status requirements_check(const struct problem *problem)
+{
+    struct condition list[CONDITIONS_MAX];
+    return conditions_check("bp_factorised", list, conditions_sampled(problem, list, CONDITIONS_MAX));
 }
 
 /* Without images: back projection by polynomials. */
@@ -111,13 +130,8 @@ static enum status settings_make(const struct problem *problem, const struct opt
                                  struct tree_settings *settings, struct factorised_cost *cost)
 {
     const int base = options->base / problem->acquisition->receivers;
-    struct condition list[CONDITIONS_MAX];
     *settings = (struct tree_settings){options->error, base > 1 ? base : 1, options->factor, options->stages - 1};
-    const enum status status =
-        conditions_check("bp_factorised", list, conditions_sampled(problem, list, CONDITIONS_MAX));
-    if (status == STATUS_OK && options->stages == STAGES_AUTO)
-        return choose_stages(problem, settings, cost);
-    return status;
+    return options->stages == STAGES_AUTO ? choose_stages(problem, settings, cost) : STATUS_OK;
 }
 
 static enum status forecast(const struct problem *problem, const void *method, const void *given,
@@ -127,7 +141,9 @@ static enum status forecast(const struct problem *problem, const void *method, c
     const struct options *options = given;
     struct tree_settings settings;
     struct factorised_cost cost;
-    enum status status = settings_make(problem, options, &settings, &cost);
+    enum status status = requirements_check(problem);
+    if (status == STATUS_OK)
+        status = settings_make(problem, options, &settings, &cost);
     if (status == STATUS_OK && settings.stages > 0 && options->stages != STAGES_AUTO)
         status = factorised_cost(problem, &settings, &cost);
     if (status != STATUS_OK)
@@ -144,16 +160,17 @@ static enum status plan(const struct problem *problem, const void *method, const
     struct tree_settings settings;
     struct factorised_cost cost;
     *out = NULL;
-    enum status status = settings_make(problem, options, &settings, &cost);
-    if (status != STATUS_OK)
-        return status;
     struct planned *planned = calloc(1, sizeof *planned);
     if (!planned)
         return status_set(STATUS_FAILED, "no memory for the plan");
-    if (settings.stages == 0)
+    const struct problem own = tree_problem(problem, &planned->part);
+    enum status status = requirements_check(problem);
+    if (status == STATUS_OK)
+        status = settings_make(&own, options, &settings, &cost);
+    if (status == STATUS_OK && settings.stages == 0)
         status = plan_direct(problem, options->error, &planned->direct);
-    else
-        status = factorised_plan(problem, &settings, &planned->tree);
+    else if (status == STATUS_OK)
+        status = factorised_plan(&own, &settings, &planned->tree);
     if (status != STATUS_OK) {
         free(planned);
         return status;
@@ -168,6 +185,15 @@ static enum status execute(void *plan, const struct echoes *echoes, struct image
     if (planned->direct)
         return bp_execute(planned->direct, echoes, image, stages);
     return factorised_execute(planned->tree, echoes, image, stages);
+}
+
+static void reads(const void *plan, bool *read)
+{
+    const struct planned *planned = plan;
+    if (planned->direct)
+        bp_reads(planned->direct, read);
+    else
+        factorised_reads(planned->tree, read);
 }
 
 static struct work work(const void *plan)
@@ -200,7 +226,7 @@ const struct algorithm bp_factorised = {
     .name = "bp_factorised",
     .summary = "fast factorised back projection, subapertures on polar grids",
     .reference = "Ulander, Hellsten, Stenstrom, IEEE TAES 39 (2003)",
-    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .options_size = sizeof(struct options),
     .params = params,
     .gated = gated,
@@ -210,6 +236,7 @@ const struct algorithm bp_factorised = {
     .forecast = forecast,
     .plan = plan,
     .execute = execute,
+    .reads = reads,
     .work = work,
     .destroy = destroy,
 };

@@ -240,6 +240,8 @@ static void subaperture_form(const struct forming *forming, int subaperture)
     const struct subaperture *part = &tree->subapertures[subaperture];
     for (int n = part->child; n < part->child + part->children; n++)
         subaperture_form(forming, n);
+    if (!plan->used[subaperture])
+        return;
     if (part->level == 0)
         compress(forming, part);
     for (int v = 0; v < tree->views; v++) {

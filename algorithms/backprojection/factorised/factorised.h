@@ -33,6 +33,7 @@ struct factorised {
     void **phasors;                     /* [stages][views] real [cosines, sines][count]: exp(-j 4 pi fc rho/c) */
     void **sums;                        /* [patch_count]: re then im, real [lines][pixels of a line] */
     bool *needed;                       /* [subapertures][patch_count]: do pixels read its image or sum its records? */
+    bool *used;                         /* [subapertures]: do they, or does its parent's image, which is used? */
     struct factorised_scratch *scratch; /* [threads] */
     int threads;
     double flops;  /* without pixels summed from records */
@@ -67,11 +68,13 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
    error. */
 enum status factorised_plan(const struct problem *problem, const struct tree_settings *settings,
                             struct factorised **out);
-/* Fill needed, direct and add to flops, line by line. The images' part of factorised_plan. */
+/* Fill needed, used, direct and add to flops, line by line. The images' part of factorised_plan. */
 void factorised_count(struct factorised *plan);
 /* Errors: STATUS_FAILED where images would be read outside of their grids, which is a fault of the tree. */
 enum status factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
                                struct stages *stages);
+/* Set read[pings] where records are read. */
+void factorised_reads(const struct factorised *plan, bool *read);
 /* FLOPs; bytes; pairs are 0. */
 struct work factorised_work(const struct factorised *plan);
 void factorised_destroy(struct factorised *plan);

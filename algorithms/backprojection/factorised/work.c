@@ -208,19 +208,34 @@ void factorised_count(struct factorised *plan)
     const int patches = tree->problem.patch_count, count = tree->first[tree->settings.stages];
     struct amounts all = {0};
     plan->needed = store_room(&plan->bp.engines, (size_t)(count * patches), sizeof *plan->needed, 1);
-    for (int n = 0; plan->needed && n < count; n++) {
+    plan->used = store_room(&plan->bp.engines, (size_t)count, sizeof *plan->used, 1);
+    for (int n = 0; plan->needed && plan->used && n < count; n++) {
+        plan->used[n] = false;
         count_images(tree, &tree->subapertures[n], &all);
         plan->flops += 6 * (double)tree->subapertures[n].values / 2;
         for (int k = 0; k < patches; k++) {
             struct amounts some = {0};
             count_pixels(tree, n, k, 1, &some);
             plan->needed[n * patches + k] = some.lines > 0 || some.records > 0;
+            plan->used[n] |= plan->needed[n * patches + k];
             plan->direct += some.records;
             all.images += some.images;
             all.traces += some.traces;
         }
     }
+    for (int n = count - 1; plan->used && n >= 0; n--) /* parents first */
+        if (tree->subapertures[n].parent >= 0)
+            plan->used[n] |= plan->used[tree->subapertures[n].parent];
     plan->flops += all.records * (4.0 * (plan->bp.table.branches - 1) + 8) + flops_of(tree, &all);
+}
+
+void factorised_reads(const struct factorised *plan, bool *read)
+{
+    for (int n = 0; n < plan->tree.first[1]; n++) {
+        const struct subaperture *part = &plan->tree.subapertures[n];
+        for (int p = part->ping; p < part->ping + part->pings; p++)
+            read[p] = plan->used[n];
+    }
 }
 
 struct work factorised_work(const struct factorised *plan)
