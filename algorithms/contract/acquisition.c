@@ -63,6 +63,17 @@ enum status acquisition_turn(const struct acquisition *acquisition, double angle
     return STATUS_OK;
 }
 
+struct acquisition acquisition_part(const struct acquisition *acquisition, int first, int pings)
+{
+    struct acquisition part = *acquisition;
+    part.pings = pings;
+    part.t0 += first;
+    part.tx += first;
+    part.rx += (size_t)first * (size_t)part.receivers;
+    part.velocity += first;
+    return part;
+}
+
 static bool vector_is_finite(struct vector v)
 {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);

@@ -50,6 +50,9 @@ struct acquisition {
 enum status acquisition_allocate(struct acquisition *acquisition);
 void acquisition_free(struct acquisition *acquisition);
 
+/* Pings [first, first + pings) of it: a view of its arrays, nothing to free. */
+struct acquisition acquisition_part(const struct acquisition *acquisition, int first, int pings);
+
 /* Check every condition stated above (ranges, finite numbers, |velocity| < c, phase precise enough: 8 pi fc tau eps <=
    1e-3). `place` (a file name) begins the message. Errors: STATUS_INVALID. */
 enum status acquisition_check(const struct acquisition *acquisition, const char *place);

@@ -55,8 +55,8 @@ struct pixel_window {
 /* The grid of a part of the pixels. Its axes begin at a pixel of the whole, rounded. */
 struct grid grid_part(const struct grid *grid, const struct pixel_window *window);
 
-/* One imaging task: all patches of the image; or a window of the only patch, whose pixels have the same bits as in the
-   whole image. */
+/* One imaging task: all patches of the image; or a window of the only patch. Its pixels have the same bits as in the
+   whole image, or differ within the error that the algorithm promises. All conditions are the whole image's. */
 struct problem {
     const struct acquisition *acquisition;
     int patch_count;                   /* >= 1 */
@@ -145,7 +145,7 @@ enum trait {
     TRAIT_EXACT = 1,          /* the image equals `reference` to 1e-8 in double */
     TRAIT_ANY_TRACK = 2,      /* images any track in space, not only uniform straight ones */
     TRAIT_APERTURE_LIMIT = 4, /* honours aperture_limit pixel by pixel */
-    TRAIT_WINDOW = 8,         /* forms a window of an image; `reads` lists the pings it needs */
+    TRAIT_WINDOW = 8,         /* forms a window of an image, of the pings that `reads` lists */
     TRAIT_AREA = 16           /* removes what lies outside the scene's target area: far from the image of all echoes */
 };
 
@@ -178,8 +178,9 @@ struct algorithm {
     const struct candidate_family *candidates; /* with a forecast: what `auto` chooses among; NULL: nothing */
     const void *method; /* its engine's description of it, passed to the callbacks; NULL: its callbacks are its own */
 
-    /* Fill list[room] with the conditions of the problem, before any work, and return the number. `plan` refuses by the
-       same conditions. NULL: conditions_general. */
+    /* Fill list[room] with the conditions of the whole problem, before any work, and return the number. `plan` refuses
+       by the same conditions; for a window it may leave those to the caller that cost much, as each window has the same
+       ones. NULL: conditions_general. */
     int (*conditions)(const struct problem *problem, const void *method, const void *options, struct condition *list,
                       int room);
     /* The promised relative L2 error of an image by these settings; a row with more warns. NAN, or NULL: no promise. */

@@ -28,6 +28,7 @@ const struct algorithm wk_classic = {
     .name = "wk_classic",
     .summary = "omega-k, squint unfolded along the track's own azimuth",
     .reference = "SQ18 section 1, [3], [4]",
+    .traits = TRAIT_WINDOW,
     .options_size = sizeof(struct wk_options),
     .params = params,
     .gated = gated,

@@ -29,6 +29,7 @@ const struct algorithm wk_squint = {
     .name = "wk_squint",
     .summary = "omega-k in axes turned by the squint",
     .reference = "SQ18 Eqs. (3) to (13), corrected",
+    .traits = TRAIT_WINDOW,
     .options_size = sizeof(struct wk_options),
     .params = params,
     .gated = gated,

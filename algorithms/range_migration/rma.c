@@ -180,14 +180,28 @@ static enum status check_work(const struct rma *rma)
     return STATUS_OK;
 }
 
-enum status rma_count(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                      struct rma **counted)
+/* The pings of a window. The filter ends at one angle for all rows: rma_focused at the nearest one. A pair's middle is
+   half an offset from its transmitter. */
+static void stretch_find(const struct problem *problem, const struct rma_method *method, struct stretch *stretch)
 {
-    *counted = NULL;
-    struct rma *rma = calloc(1, sizeof *rma);
+    stretch_begin(problem, stretch);
+    if (!stretch->cut)
+        return;
+    const struct rma_bounds bounds = rma_view_of(&stretch->problem, method, &stretch->track).bounds;
+    const struct grid *g = &stretch->grid;
+    const double tangent = bounds.sine / sqrt(1 - bounds.sine * bounds.sine);
+    stretch_cut(stretch, (const double[2]){-tangent, tangent}, bounds.aside / 2 * (1 + rma_last_row(g) / g->r_first));
+}
+
+/* A plan laid out, and nothing more; *made is NULL on error. */
+static enum status lay_out(const struct problem *problem, const struct rma_method *method,
+                           const struct rma_options *options, struct rma **made)
+{
+    struct rma *rma = *made = calloc(1, sizeof *rma);
     if (!rma)
         return status_set(STATUS_FAILED, "no memory for the plan");
-    rma->problem = *problem;
+    stretch_find(problem, method, &rma->stretch);
+    rma->problem = rma->stretch.problem;
     rma->method = *method;
     rma->options = *options;
     if (method->terms > 0)
@@ -195,26 +209,59 @@ enum status rma_count(const struct problem *problem, const struct rma_method *me
     rma->threads = omp_get_max_threads();
     rma->work.bytes = sizeof *rma - sizeof rma->store;
     fit_nodes_fill(FIT_DEGREE + 1, rma->fit.nodes, rma->fit.powers);
-    enum status status = rma_layout(rma);
-    if (status == STATUS_OK)
-        status = count_work(rma);
-    if (status == STATUS_OK)
-        status = check_work(rma);
+    const enum status status = rma_layout(rma);
     if (status != STATUS_OK) {
         rma_destroy(rma);
-        return status;
+        *made = NULL;
     }
-    *counted = rma;
-    return STATUS_OK;
+    return status;
+}
+
+enum status rma_count(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                      struct rma **counted)
+{
+    enum status status = lay_out(problem, method, options, counted);
+    if (status == STATUS_OK)
+        status = count_work(*counted);
+    if (status == STATUS_OK && !problem->window) /* who asks for windows chooses their sizes */
+        status = check_work(*counted);
+    if (status != STATUS_OK) {
+        rma_destroy(*counted);
+        *counted = NULL;
+    }
+    return status;
+}
+
+/* The whole image decides whether a window of it is formed; of the conditions, by those that cost little. */
+static enum status whole_check(const struct problem *problem, const struct rma_method *method,
+                               const struct rma_options *options)
+{
+    struct problem whole = *problem;
+    struct rma *rma;
+    whole.window = NULL;
+    enum status status = rma_requirements_check(&whole, method->name);
+    if (status != STATUS_OK)
+        return status;
+    status = lay_out(&whole, method, options, &rma);
+    rma_destroy(rma);
+    return status;
+}
+
+static enum status check(const struct problem *problem, const void *given, const struct rma_method *method,
+                         const void *options)
+{
+    struct condition list[CONDITIONS_MAX];
+    if (problem->window)
+        return whole_check(problem, method, options);
+    const int count = rma_conditions(problem, given, options, list, CONDITIONS_MAX);
+    return rma_conditions_check(method->name, list, count);
 }
 
 enum status rma_plan(const struct problem *problem, const void *given, const void *options, void **plan)
 {
     const struct rma_method method = rma_choose(given, options);
-    struct condition list[CONDITIONS_MAX];
     struct rma *rma = NULL;
-    const int count = rma_conditions(problem, given, options, list, CONDITIONS_MAX);
-    enum status status = rma_conditions_check(method.name, list, count);
+    enum status status = check(problem, given, &method, options);
     *plan = NULL;
     if (status == STATUS_OK)
         status = rma_count(problem, &method, options, &rma);
@@ -252,7 +299,8 @@ enum status rma_execute(void *plan, const struct echoes *echoes, struct image *i
     struct rma *rma = plan;
     static const char *const first_stages[] = {"compress", "map"};
     double seconds[2] = {0};
-    transform(rma)->compress(rma, ISA_CHOOSE(rma_map, rma->problem.precision), echoes->samples, seconds);
+    transform(rma)->compress(rma, ISA_CHOOSE(rma_map, rma->problem.precision),
+                             stretch_samples(&rma->stretch, echoes->samples), seconds);
     stages_share(stages, 2, first_stages, seconds);
     for (const struct rma_swath *swath = rma->swaths; swath < rma->swaths + rma->swath_count; swath++) {
         transform(rma)->spread(rma, swath);
@@ -265,6 +313,11 @@ enum status rma_execute(void *plan, const struct echoes *echoes, struct image *i
         stages_end(stages, "inverse");
     }
     return STATUS_OK;
+}
+
+void rma_reads(const void *plan, bool *read)
+{
+    stretch_reads(&((const struct rma *)plan)->stretch, read);
 }
 
 struct work rma_work(const void *plan)

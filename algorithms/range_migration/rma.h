@@ -67,6 +67,10 @@ struct rma_bounds {
    own extent and some Fresnel zones beyond it. */
 double rma_reach(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
+/* m: the Fresnel zones over which an azimuth transform's filter ends beyond its widest angle. A cut of the track
+   farther out makes no ripple. */
+double azimuth_guard(const struct acquisition *acquisition, double r);
+
 /* The greatest distance between a target at range r and the middle of a pair, m: wavenumbers beyond are left out. */
 double rma_focused(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
@@ -76,8 +80,9 @@ double rma_promise(const void *options);
 /* The callbacks of struct algorithm, whose `method` is a struct rma_method, and whose options are a struct rma_options.
    Conditions, forecast and cost: rma_conditions.h. */
 #define RMA_CALLBACKS                                                                                                  \
-    .conditions = rma_conditions, .promise = rma_promise, .forecast = rma_forecast, .cost = rma_cost,                  \
-    .plan = rma_plan, .execute = rma_execute, .work = rma_work, .destroy = rma_destroy
+    .traits = TRAIT_WINDOW, .conditions = rma_conditions, .promise = rma_promise, .forecast = rma_forecast,            \
+    .cost = rma_cost, .plan = rma_plan, .execute = rma_execute, .reads = rma_reads, .work = rma_work,                  \
+    .destroy = rma_destroy
 int rma_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                    int room);
 enum status rma_forecast(const struct problem *problem, const void *method, const void *options,
@@ -85,6 +90,7 @@ enum status rma_forecast(const struct problem *problem, const void *method, cons
 enum status rma_cost(const struct problem *problem, const void *method, const void *options, struct forecast *forecast);
 enum status rma_plan(const struct problem *problem, const void *method, const void *options, void **plan);
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
+void rma_reads(const void *plan, bool *read);
 struct work rma_work(const void *plan);
 void rma_destroy(void *plan);
 

@@ -13,7 +13,7 @@ static const double LAW_LIMIT = 0.1;                       /* rad: the image's e
 static const double TERMS_LIMIT = 0.05, TAPS_LIMIT = 0.05; /* relative L2: half the limit of the predicted error */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 static const double ECHO_ZONES = 4;     /* Fresnel zones beyond the echoes' own sine, over which their spectrum fades */
-static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: a cut farther out makes no ripple */
+static const double FRESNEL_ZONES = 6;  /* of azimuth_guard */
 
 struct rma_method rma_choose(const struct rma_method *method, const struct rma_options *options)
 {
@@ -91,10 +91,15 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
     return view;
 }
 
+double azimuth_guard(const struct acquisition *acquisition, double r)
+{
+    const double wavelength = acquisition->sound_speed / (acquisition->fc - acquisition->bandwidth / 2);
+    return FRESNEL_ZONES * sqrt(wavelength * r / 2);
+}
+
 double rma_reach(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r)
 {
-    double wavelength = acquisition->sound_speed / (acquisition->fc - acquisition->bandwidth / 2);
-    double track = bounds->way + FRESNEL_ZONES * sqrt(wavelength * r / 2);
+    double track = bounds->way + azimuth_guard(acquisition, r);
     return fmin(r * bounds->sine / sqrt(1 - bounds->sine * bounds->sine), track);
 }
 

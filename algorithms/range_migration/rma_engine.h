@@ -57,6 +57,7 @@
 #include "common/memory.h"
 #include "range_migration/delay_compensation.h"
 #include "range_migration/rma.h"
+#include "range_migration/stretch.h"
 
 enum {
     RMA_ALIGNMENT = 64,   /* bytes: a vector, and a line of the cache */
@@ -190,7 +191,8 @@ struct rma_delay {
 };
 
 struct rma {
-    struct problem problem;
+    struct stretch stretch;
+    struct problem problem; /* the stretch's */
     struct rma_method method;
     struct rma_options options;
     struct spectrum_setting setting;

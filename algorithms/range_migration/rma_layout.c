@@ -64,9 +64,7 @@ static enum status lay_delay(struct rma *rma)
 enum status rma_delay_tables(struct rma *rma)
 {
     struct rma_delay *delay = rma->delay;
-    struct straight_track track;
-    acquisition_is_straight(rma->problem.acquisition, &track);
-    const struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
+    const struct rma_view view = rma_view_of(&rma->problem, &rma->method, &rma->stretch.track);
     if (!delay_terms_make(&view, rma->method.terms, &delay->terms))
         return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, rma->receivers);
     rma->work.bytes += (double)sizeof *delay + delay->terms.bytes;
@@ -76,14 +74,13 @@ enum status rma_delay_tables(struct rma *rma)
 static enum status lay_track(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    struct straight_track track;
+    const struct straight_track *track = &rma->stretch.track;
     enum status status = lay_receivers(rma);
     if (status != STATUS_OK)
         return status;
-    acquisition_is_straight(a, &track);
-    struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
-    rma->x_first = track.x_first;
-    rma->spacing = track.spacing;
+    struct rma_view view = rma_view_of(&rma->problem, &rma->method, track);
+    rma->x_first = track->x_first;
+    rma->spacing = track->spacing;
     rma->t0 = a->t0[0];
     rma->fs = a->fs;
     rma->pings = a->pings;
@@ -191,7 +188,7 @@ double rma_period(const struct acquisition *a, const struct rma_bounds *bounds, 
     /* A receiver aside sees half its offset farther; less than a Fresnel zone tapers like any edge. */
     const double zone = sqrt(a->sound_speed / a->fc * farthest / 2);
     const double extent = (a->pings - 1) * spacing + overhang + angle + fmax(0, bounds->aside / 2 - zone);
-    return fmax(ceil(extent / spacing) + 1, folds / spacing);
+    return fmax(fmax(ceil(extent / spacing) + 1, a->pings), folds / spacing);
 }
 
 /* Azimuth: the full rate of M receivers (LBF21 Eq. (10)). */
@@ -200,11 +197,12 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
     double spacing = fabs(rma->spacing),
            angle = swath->farthest * rma->bounds.sine / sqrt(1 - rma->bounds.sine * rma->bounds.sine);
     double x_low = fmin(rma->x_first, rma->x_first + (rma->pings - 1) * rma->spacing);
-    double x_high = x_low + (rma->pings - 1) * spacing, overhang = 0;
+    /* A stretch ends so far from its window's columns that nothing else wraps around onto them. */
+    double x_high = x_low + (rma->pings - 1) * spacing, overhang = rma->stretch.cut ? -INFINITY : 0;
     for (int k = 0; k < swath->patch_count; k++) {
         const struct grid *g = &swath->patches[k].grid;
         double last = g->x_first + (g->x_count - 1) * g->x_step;
-        if (g->x_first < x_low - angle || last > x_high + angle)
+        if (!rma->stretch.cut && (g->x_first < x_low - angle || last > x_high + angle))
             return status_set(STATUS_UNSUPPORTED,
                               "%s: condition in_wavenumbers: how far columns from %g to %g m lie outside the %g to %g "
                               "m that the track's wavenumbers cover is %.3g m; at most 0 is needed (cure: "

@@ -235,6 +235,7 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
             record = wave;
         }
         const real *between = rma->delay ? padded(rma, record) : NULL;
+        const real weight = (real)stretch_weight(&rma->stretch, turn % rma->pings);
         const double compressed = clock_monotonic();
         for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
             real *row = (real *)s->data + 2 * (size_t)s->row * (size_t)k;
@@ -242,6 +243,8 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
                 map(rma, s, receiver, between, row);
             else
                 cut(rma, s, record, row);
+            for (size_t i = 0; weight < 1 && i < 2 * (size_t)s->row; i++)
+                row[i] *= weight;
         }
         compressing += compressed - begun;
         mapping += clock_monotonic() - compressed;

@@ -72,7 +72,8 @@ enum status wk_lay_out(const struct problem *problem, const void *method, const 
     struct wk *wk = *made = calloc(1, sizeof *wk);
     if (!wk)
         return status_set(STATUS_FAILED, "no memory for %s", ((const struct wk_method *)method)->name);
-    wk->problem = *problem;
+    stretch_begin(problem, &wk->stretch);
+    wk->problem = wk->stretch.problem;
     wk->method = *(const struct wk_method *)method;
     wk->options = *(const struct wk_options *)options;
     if (wk->method.rotates || wk->method.filters)
@@ -87,11 +88,25 @@ enum status wk_lay_out(const struct problem *problem, const void *method, const 
     return status;
 }
 
+/* The whole image decides whether a window of it is formed; of the conditions, by those that cost little. */
+static enum status whole_check(const struct problem *problem, const void *method, const void *options)
+{
+    struct problem whole = *problem;
+    struct wk *wk;
+    whole.window = NULL;
+    enum status status = wk_requirements_check(&whole, method);
+    if (status != STATUS_OK)
+        return status;
+    status = wk_lay_out(&whole, method, options, &wk);
+    wk_destroy(wk);
+    return status;
+}
+
 enum status wk_plan(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     struct wk *wk = NULL;
     *plan = NULL;
-    enum status status = wk_conditions_check(problem, method);
+    enum status status = problem->window ? whole_check(problem, method, options) : wk_conditions_check(problem, method);
     if (status == STATUS_OK)
         status = wk_lay_out(problem, method, options, &wk);
     if (status != STATUS_OK)
@@ -128,7 +143,7 @@ enum status wk_execute(void *plan, const struct echoes *echoes, struct image *im
 {
     struct wk *wk = plan;
     const struct wk_transform *t = transform(wk);
-    const void *samples = echoes->samples;
+    const void *samples = stretch_samples(&wk->stretch, echoes->samples);
     if (wk->filter) {
         t->compress(wk, samples);
         samples = wk->compressed;
@@ -149,6 +164,11 @@ enum status wk_execute(void *plan, const struct echoes *echoes, struct image *im
         }
     }
     return STATUS_OK;
+}
+
+void wk_reads(const void *plan, bool *read)
+{
+    stretch_reads(&((const struct wk *)plan)->stretch, read);
 }
 
 struct work wk_work(const void *plan)

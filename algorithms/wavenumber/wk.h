@@ -59,7 +59,8 @@ struct wk_method {
 
 /* The callbacks of struct algorithm, whose `method` is a struct wk_method, and whose options a struct wk_options. */
 #define WK_CALLBACKS                                                                                                   \
-    .conditions = wk_conditions, .plan = wk_plan, .execute = wk_execute, .work = wk_work, .destroy = wk_destroy
+    .conditions = wk_conditions, .plan = wk_plan, .execute = wk_execute, .reads = wk_reads, .work = wk_work,           \
+    .destroy = wk_destroy
 enum status wk_plan(const struct problem *problem, const void *method, const void *options, void **plan);
 /* A method that rotates needs a slower platform; one that filters has a condition on the loss of its own targets. */
 int wk_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
@@ -71,6 +72,7 @@ enum status wk_forecast(const struct problem *problem, const void *method, const
 /* The counts alone. */
 enum status wk_cost(const struct problem *problem, const void *method, const void *options, struct forecast *forecast);
 enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
+void wk_reads(const void *plan, bool *read);
 struct work wk_work(const void *plan);
 void wk_destroy(void *plan);
 

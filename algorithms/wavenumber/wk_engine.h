@@ -20,6 +20,7 @@
 #include "common/fit.h"
 #include "common/memory.h"
 #include "range_migration/rma_conditions.h"
+#include "range_migration/stretch.h"
 #include "wavenumber/wk.h"
 
 struct polar_filter;
@@ -87,7 +88,8 @@ ISA_DECLARE(wk_line_function, wk_line);
 ISA_DECLARE(wk_row_function, wk_row);
 
 struct wk {
-    struct problem problem;
+    struct stretch stretch;
+    struct problem problem; /* the stretch's */
     struct wk_method method;
     struct wk_options options;
     struct work work;

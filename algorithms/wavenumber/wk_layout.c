@@ -42,28 +42,31 @@ static void angles_limit(const struct wk *wk, double half, double sine[2])
 static enum status lay_track(struct wk *wk)
 {
     const struct acquisition *a = wk->problem.acquisition;
-    struct straight_track track;
-    acquisition_is_straight(a, &track); /* as wk_conditions requires */
+    const struct straight_track *track = &wk->stretch.track; /* as wk_conditions requires */
     wk->sound_speed = a->sound_speed;
-    wk->speed = track.speed;
+    wk->speed = track->speed;
     wk->fc = a->fc;
     wk->fs = a->fs;
     wk->t0 = a->t0[0];
-    wk->pings = a->pings;
     wk->samples = a->samples;
-    wk->middle = a->pings / 2;
     wk->centre = a->samples / 2;
-    wk->spacing = fabs(track.spacing);
-    wk->reversed = track.spacing < 0;
+    wk->spacing = fabs(track->spacing);
+    wk->reversed = track->spacing < 0;
     wk->squint = a->echo_squint;
-    wk->slope = wk_centroid_slope(a, &track);
-    double first = track.x_first + (wk->reversed ? (a->pings - 1) * track.spacing : 0);
-    wk->x_middle = first + wk->middle * wk->spacing;
-    wk->x_end[0] = first - wk->x_middle;
-    wk->x_end[1] = first + (a->pings - 1) * wk->spacing - wk->x_middle;
+    wk->slope = wk_centroid_slope(a, track);
     wk->angle = wk->method.rotates ? wk->squint : 0;
     /* Echoes reach out to the element's first null. */
     angles_limit(wk, a->tx_length > 0 ? wavelength_longest(wk) / a->tx_length : INFINITY, wk->sine);
+    if (wk->stretch.cut) {
+        stretch_cut(&wk->stretch, (const double[2]){tan(asin(wk->sine[0])), tan(asin(wk->sine[1]))}, 0);
+        wk->problem = wk->stretch.problem;
+    }
+    wk->pings = wk->problem.acquisition->pings;
+    wk->middle = wk->pings / 2;
+    double first = track->x_first + (wk->reversed ? (wk->pings - 1) * track->spacing : 0);
+    wk->x_middle = first + wk->middle * wk->spacing;
+    wk->x_end[0] = first - wk->x_middle;
+    wk->x_end[1] = first + (wk->pings - 1) * wk->spacing - wk->x_middle;
     return STATUS_OK;
 }
 
@@ -166,7 +169,9 @@ static double own_period(const struct wk *wk)
         for (int k = 0; k < 2; k++) {
             double extent[2];
             own_extent(wk, g->r_first + k * (g->r_count - 1) * g->r_step, extent);
-            period = fmax(period, fmax(extent[1], last) - fmin(extent[0], first));
+            /* A stretch ends so far from its window's columns that only these may not be wrapped onto. */
+            period = fmax(period, wk->stretch.cut ? fmax(extent[1] - first, last - extent[0])
+                                                  : fmax(extent[1], last) - fmin(extent[0], first));
         }
     }
     return period;

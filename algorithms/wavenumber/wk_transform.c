@@ -66,10 +66,11 @@ static void weights_fill(struct wk *wk)
         double place = (double)(i - wk->weights_beside - wk->centre) / wk->range_length;
         range[i] = (real)weight_at(&wk->range_kernel, place, 0.5 / wk->oversampling);
     }
-    for (int n = 0; azimuth && n < wk->pings; n++)
-        azimuth[n] = wk->angle != 0
-                         ? (real)weight_at(&wk->azimuth_kernel, (double)(n - wk->middle) / wk->azimuth_length, 0.45)
-                         : 1;
+    for (int n = 0; azimuth && n < wk->pings; n++) {
+        const double place = (double)(n - wk->middle) / wk->azimuth_length;
+        azimuth[n] = (real)((wk->angle != 0 ? weight_at(&wk->azimuth_kernel, place, 0.45) : 1)
+                            * stretch_weight(&wk->stretch, wk->reversed ? wk->pings - 1 - n : n));
+    }
 }
 
 /* The azimuth sum over lines kx = kx_first + i kx_step onto columns x = x0 + j dx: one transform where 2 pi/(kx_step

@@ -48,7 +48,7 @@ enum status command_simulate(const struct task *task)
     return status;
 }
 
-static void warnings_print(const struct condition *list, int count)
+void warnings_print(const struct condition *list, int count)
 {
     char text[400];
     for (int k = 0; k < count; k++)

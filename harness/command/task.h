@@ -56,6 +56,9 @@ enum status command_conformance(const struct task *task);
 enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
+/* Print those of conditions that warn and are not met. */
+struct condition;
+void warnings_print(const struct condition *list, int count);
 /* `image --tile`: form the tiles that its file lacks. */
 struct image_origin;
 enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin);

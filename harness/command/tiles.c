@@ -222,6 +222,53 @@ static enum status tiles_form(const struct task *task, const struct shard *shard
     return status;
 }
 
+/* Of azimuth transforms: tiles overlap along the track. `read`: pings of a tile in the middle. */
+static void overlap_print(const struct scene *scene, const struct tiles *tiles, int read)
+{
+    enum { MOST = 2 }; /* times the work of the whole image: narrower tiles are mostly overlap */
+    const struct acquisition *a = &scene->acquisition;
+    const struct grid *g = &tiles->grid;
+    const int wide = (g->x_count + tiles->columns - 1) / tiles->columns;
+    struct condition overlap =
+        condition_most(SEVERITY_WARN, "tile_overlap", (double)read * wide / a->pings, MOST,
+                       "pings that all tiles along x image, over those of the track", "back projection");
+    const double each = g->x_step * cos(g->angle_rad) * (a->pings - 1) / fabs(a->tx[a->pings - 1].x - a->tx[0].x);
+    const double columns = ceil((read - tiles->columns * each) * g->x_count / (MOST * a->pings - g->x_count * each));
+    if (columns > tiles->columns && columns <= g->x_count)
+        condition_cure_add(&overlap, ", or tiles of %.0f columns", columns);
+    warnings_print(&overlap, 1);
+    printf("%s: a tile of %d columns images %d of %d pings; conditions are those of the whole image\n", tiles->path,
+           tiles->columns, read, a->pings);
+}
+
+/* Before the file is made: what refuses the whole image refuses its tiles, and a tile in the middle is planned. */
+static enum status tile_try(const struct spec *spec, const struct scene *scene, const struct tiles *tiles)
+{
+    const int deep = (tiles->grid.r_count + tiles->rows - 1) / tiles->rows;
+    const struct pixel_window window = tiles_window(tiles, tiles_count(tiles) / deep / 2 * deep);
+    struct problem problem = problem_make(&scene->acquisition, 1, &tiles->grid, spec->precision);
+    struct imaging imaging;
+    struct condition list[CONDITIONS_MAX];
+    bool *read = calloc((size_t)scene->acquisition.pings, sizeof *read);
+    const int conditions = algorithm_conditions(spec->algorithm, &problem, spec->options, list, CONDITIONS_MAX);
+    enum status status = read ? conditions_check(spec->algorithm->name, list, conditions)
+                              : status_set(STATUS_FAILED, "%s: out of memory for its pings", tiles->path);
+    problem.window = &window;
+    if (status == STATUS_OK)
+        status = imaging_open(spec, &problem, &imaging);
+    if (status == STATUS_OK && !(spec->algorithm->traits & TRAIT_ANY_TRACK) && ranks_number() == 0) {
+        int count = 0;
+        imaging_reads(&imaging, &problem, read);
+        for (int p = 0; p < scene->acquisition.pings; p++)
+            count += read[p];
+        overlap_print(scene, tiles, count);
+    }
+    if (status == STATUS_OK)
+        imaging_close(&imaging);
+    free(read);
+    return status;
+}
+
 enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin)
 {
     const struct spec *spec = &task->specs[0];
@@ -230,15 +277,17 @@ enum status image_tiles(const struct task *task, const struct scene *scene, cons
     char settings[1400];
     if (choice_asked(spec, &budget) || !(spec->algorithm->traits & TRAIT_WINDOW) || scene->patch_count != 1)
         return status_set(STATUS_UNSUPPORTED,
-                          "image: --tile takes an image of one patch by a back projection that sums each pixel by "
-                          "itself (bp_nearest, bp_linear, bp_sinc, bp_fitted, bp_farrow, bp_zeropad, reference); %s of "
-                          "%d patches is asked for",
+                          "image: --tile takes an image of one patch, by any algorithm but auto and wk_polar (whose "
+                          "filter needs the whole track: `filter` writes filtered echoes for the others); %s of %d "
+                          "patches is asked for",
                           spec->algorithm->name, scene->patch_count);
     struct shard shard;
     bool sealed = false;
     enum status status = shard_parse("image", task->shard, &shard);
     if (status == STATUS_OK)
         status = tile_parse(task->tile, &tiles);
+    if (status == STATUS_OK)
+        status = tile_try(spec, scene, &tiles);
     if (status != STATUS_OK)
         return status;
     settings_format(task, scene, origin, settings, sizeof settings);

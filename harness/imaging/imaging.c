@@ -10,7 +10,7 @@ enum status imaging_open(const struct spec *spec, const struct problem *problem,
 {
     *imaging = (struct imaging){.algorithm = spec->algorithm};
     if (problem->window && !(problem->patch_count == 1 && spec->algorithm->traits & TRAIT_WINDOW))
-        return status_set(STATUS_UNSUPPORTED, "%s: forms no window of an image; back projection of one patch does",
+        return status_set(STATUS_UNSUPPORTED, "%s: forms no window of an image, or not of several patches",
                           spec->algorithm->name);
     if (problem->window)
         imaging->part = grid_part(problem->patches, problem->window);

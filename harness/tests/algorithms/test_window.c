@@ -179,7 +179,7 @@ static void others_refuse(void **state)
     case_make(&cases[0], &a, &echoes);
     struct problem problem = problem_make(&a, 1, &cases[0].grid, PRECISION_FLOAT);
     problem.window = &cases[0].window;
-    assert_int_equal(spec_parse("bp_factorised", &spec), STATUS_OK);
+    assert_int_equal(spec_parse("wk_polar", &spec), STATUS_OK);
     assert_int_equal(imaging_open(&spec, &problem, &imaging), STATUS_UNSUPPORTED);
     spec_free(&spec);
     echoes_free(&echoes);

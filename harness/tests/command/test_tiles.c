@@ -186,7 +186,8 @@ static void others_are_refused(void **state)
         {{IMAGE("bp_nearest", "x.mat"), "--tile", "8"}, {"--tile", "'8'"}},
         {{IMAGE("bp_nearest", "x.mat"), "--tile", "0x8"}, {"--tile", "'0x8'"}},
         {{IMAGE("bp_nearest", "x.png"), "--tile", "8x2"}, {"--tile", "FILE.mat"}},
-        {{IMAGE("rma_delay", "x.mat"), "--tile", "8x2"}, {"--tile", "rma_delay"}},
+        {{IMAGE("wk_polar", "x.mat"), "--tile", "8x2"}, {"--tile", "wk_polar", "filter"}},
+        {{IMAGE("wk_classic", "none.mat"), "--tile", "8x2"}, {"wk_classic", "one_receiver"}},
         {{IMAGE("auto", "x.mat"), "--tile", "8x2"}, {"--tile", "auto"}},
     };
     for (size_t k = 0; k < COUNT_OF(refusals); k++) {
