@@ -12,6 +12,7 @@
 
 #include "command/task.h"
 #include "common/isa.h"
+#include "guests/external.h"
 #include "text/number.h"
 #include "text/shown_text.h"
 #include "text/suggestion.h"
@@ -36,9 +37,9 @@ struct command {
 static const struct command commands[] = {
     {"run", "compare algorithms on scenes: error against run time",
      "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [-o DIR] [--all] [--flops] "
-     "[--shard I/N]",
-     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLFX", 0, INT_MAX,
-     command_run, true, .every = true},
+     "[--shard I/N] [--timeout S]",
+     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLFXU", 0,
+     INT_MAX, command_run, true, .every = true},
     {"report", "make one page of a results folder", "DIR", "make one page of a results folder: DIR/report.html", "", 1,
      1, command_report, false},
     {"list", "list the algorithms", "", "list the algorithms, with summary, reference and traits", "", 0, 0,
@@ -63,8 +64,8 @@ static const struct command commands[] = {
      false},
     {"image", "form one image",
      "(--scene SCENE | --echoes FILE.mat [--grid GRID]) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
-     "[--verify] [--tile NxM [--shard I/N]]",
-     "form one image, as numbers or as a picture; with --tile it continues where it was ended", "oseagtRWIX", 0, 0,
+     "[--verify] [--tile NxM [--shard I/N]] [--timeout S]",
+     "form one image, as numbers or as a picture; with --tile it continues where it was ended", "oseagtRWIXU", 0, 0,
      command_image, false},
     {"show", "draw an image file", "FILE.mat [-o FILE.png] [--range DB]",
      "draw an image file; the picture is beside it, or at -o", "oR", 1, 1, command_show, false},
@@ -94,8 +95,8 @@ static const struct command commands[] = {
      command_reproduce, true},
     {"sweep", "error against run time, each algorithm over its settings",
      "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [--precision float|double] [-o DIR] "
-     "[--all] [--shard I/N]",
-     "measure error against run time, each algorithm over its settings", "oategPLX", 0, INT_MAX, command_sweep, true,
+     "[--all] [--shard I/N] [--timeout S]",
+     "measure error against run time, each algorithm over its settings", "oategPLXU", 0, INT_MAX, command_sweep, true,
      .every = true},
     {"phase", "phase errors of the two-dimensional spectra (LBF21)", "([SCENE] [-o DIR] | --at FILE.csv)",
      "compute phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1, command_phase, false},
@@ -103,8 +104,8 @@ static const struct command commands[] = {
      "[SCENE ...] [--algorithm SPEC ...] [-o DIR] [--quick] [--shard I/N]",
      "image extreme scenes in all rounding modes: verdicts and digits lost, against results/stability.csv", "oaQX", 0,
      INT_MAX, command_stability, false},
-    {"conformance", "test every promise of one algorithm, also of a plug-in", "SPEC",
-     "test every promise of one algorithm: image, bits, memory, work, settings; exit status 1 where one is broken", "",
+    {"conformance", "test every promise of one algorithm, also of a plug-in", "SPEC [--timeout S]",
+     "test every promise of one algorithm: image, bits, memory, work, settings; exit status 1 where one is broken", "U",
      1, 1, command_conformance, false},
     {"bench", "speed of the engines against the processor's peak", "[SPEC ...] [-o DIR]",
      "measure the speed of the engines, or of the SPECs, against the processor's peak and the scalar reference loop",
@@ -122,11 +123,13 @@ static const struct named {
     {'o', "output", "PATH", "file or folder of the result", IN_TASK(output)},
     {'s', "scene", "SCENE", "a path, or a name below scenes/ without .cfg", IN_TASK(scene)},
     {'e', "echoes", "FILE", "recorded echoes in MATLAB format", IN_TASK(echoes)},
-    {'a', "algorithm", "SPEC", "NAME or PLUGIN.so, then :key=value,...; all take precision=double", 0},
+    {'a', "algorithm", "SPEC", "NAME, PLUGIN.so or external:COMMAND, then :key=value,...; all take precision=double",
+     0},
     {'g', "grid", "GRID", "xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)", IN_TASK(grid)},
     {'t', "threads", "N", "OpenMP threads, 1 to 1024", IN_TASK(threads)},
     {'R', "range", "DB", "range of a picture below its peak, 60 dB unless given", IN_TASK(range)},
     {'I', "tile", "NxM", "form so many pixels along x and r at a time", IN_TASK(tile)},
+    {'U', "timeout", "S", "longest silence of an external program, 600 s unless given", IN_TASK(timeout)},
     {'X', "shard", "I/N", "take the I-th of N parts of the work", IN_TASK(shard)},
     {'P', "precision", "WHICH", "float or double; both unless given, or stated by a SPEC", IN_TASK(precision)},
     {'E', "error", "E", "of the image after one gain (L2), 1e-3 unless given", IN_TASK(error)},
@@ -196,6 +199,18 @@ static enum status threads_parse(const char *text)
         return status_set(STATUS_INVALID, "OMP_NUM_THREADS is '%s', must be a whole number from 1 to %d", variable,
                           THREADS_MOST);
     omp_set_num_threads(threads < THREADS_MOST ? (int)threads : THREADS_MOST);
+    return STATUS_OK;
+}
+
+/* Of external programs. */
+static enum status timeout_parse(const char *text)
+{
+    double seconds = 0;
+    const char *end = text ? number_read(text, &seconds) : NULL;
+    if (text && (!end || *end || !(seconds > 0 && seconds <= 1e6)))
+        return status_set(STATUS_INVALID, "--timeout is '%s', must be a number of seconds above 0, at most 1e6", text);
+    if (text)
+        external_timeout(seconds);
     return STATUS_OK;
 }
 
@@ -306,6 +321,8 @@ static enum status parse(const struct command *command, int argc, char **argv, s
         status = spec_add(task, algorithms[k]->name);
     if (status == STATUS_OK)
         status = threads_parse(task->threads);
+    if (status == STATUS_OK)
+        status = timeout_parse(task->timeout);
     if (status == STATUS_OK && task->name_count < command->names_least)
         return status_set(STATUS_INVALID, "%s: an argument is missing: sasbench %s %s", command->name, command->name,
                           command->arguments);

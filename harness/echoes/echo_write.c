@@ -65,7 +65,7 @@ static void write_scalars(struct writer *writer, const struct acquisition *a)
             write_reals(writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
 }
 
-static void write_rest(struct writer *writer, const struct acquisition *a, const struct echo_notes *notes)
+void acquisition_write(struct writer *writer, const struct acquisition *a, const struct echo_notes *notes)
 {
     const size_t receivers = (size_t)a->receivers, pings = (size_t)a->pings;
     if (!a->compressed) {
@@ -121,7 +121,7 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
     if (begin(&writer, path, a, samples_bytes(a, echoes->precision)) != STATUS_OK)
         return writer.status;
     write_complex(&writer, "samples", dims, echoes->precision, echoes->samples, count, 1);
-    write_rest(&writer, a, notes);
+    acquisition_write(&writer, a, notes);
     return writer_close(&writer);
 }
 
@@ -196,7 +196,7 @@ enum status echo_file_stream(const char *path, const struct acquisition *a, cons
         return stream_whole(&stream, notes);
     if (begin(&writer, path, a, samples_bytes(a, PRECISION_DOUBLE)) != STATUS_OK)
         return writer.status;
-    write_rest(&writer, a, notes);
+    acquisition_write(&writer, a, notes);
     writer.add = stream_add;
     writer.with = &stream;
     return writer_close(&writer);

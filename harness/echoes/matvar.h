@@ -144,6 +144,8 @@ bool write_at(int descriptor, const void *data, size_t size, off_t at);
 /* Write the notes, if there are any. */
 struct echo_notes;
 void echo_notes_write(struct writer *writer, const struct echo_notes *notes);
+/* Write all of an echo file but its format and its samples. */
+void acquisition_write(struct writer *writer, const struct acquisition *acquisition, const struct echo_notes *notes);
 /* Write all of an image file but its pixels: a patch's axes, and the image's origin. */
 struct image_origin;
 void image_axes_write(struct writer *writer, const struct grid *grid, int patch);

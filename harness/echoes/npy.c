@@ -9,13 +9,14 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { DESCRIPTION_MOST = 4096 };
+enum { DESCRIPTION_MOST = 4096, BLOCK = 4096 };
 #define ACCEPTED "an array of '<c8', '<c16', '<f4' or '<f8' of version 1 to 3 is needed"
 
 struct array {
     char type;          /* c or f */
     int size;           /* bytes of a number */
     bool fortran;       /* the first index runs fastest */
+    int dimensions;     /* 1 or 2 */
     long long shape[2]; /* rows, columns */
 };
 
@@ -31,14 +32,20 @@ static bool description_parse(const char *text, struct array *array)
 {
     const char *type = value_find(text, "'descr'"), *order = value_find(text, "'fortran_order'"),
                *shape = value_find(text, "'shape'");
-    int length = 0;
+    int length = 0, alone = 0;
     if (!type || !order || !shape)
         return false;
     array->fortran = strncmp(order, "True", 4) == 0;
+    if (sscanf(shape, "(%18lld ,%n", &array->shape[0], &alone) == 1 && alone > 0 && shape[alone] == ')') {
+        array->shape[1] = 1;
+        array->dimensions = 1;
+        length = alone;
+    } else if (sscanf(shape, "(%18lld ,%18lld )%n", &array->shape[0], &array->shape[1], &length) == 2)
+        array->dimensions = 2;
     return sscanf(type, "'<%c%d'", &array->type, &array->size) == 2
            && ((array->type == 'c' && (array->size == 8 || array->size == 16))
                || (array->type == 'f' && (array->size == 4 || array->size == 8)))
-           && sscanf(shape, "(%18lld ,%18lld )%n", &array->shape[0], &array->shape[1], &length) == 2 && length > 0;
+           && length > 0;
 }
 
 /* Magic, version, length of the description, description: the numbers follow. */
@@ -76,50 +83,81 @@ static double complex number(const struct array *array, const unsigned char *fro
     return value;
 }
 
-static enum status numbers_read(FILE *stream, const char *path, const struct array *array, double complex *pixels)
+static void pixel_set(const struct image *image, int patch, size_t n, double complex value)
 {
-    const size_t rows = (size_t)array->shape[0], columns = (size_t)array->shape[1], count = rows * columns;
-    unsigned char bytes[16];
-    for (size_t n = 0; n < count; n++) {
-        if (fread(bytes, (size_t)array->size, 1, stream) != 1)
-            return status_set(STATUS_INVALID, "%s: ends after %zu of %zu numbers", path, n, count);
-        const double complex value = number(array, bytes);
-        pixels[array->fortran ? n % rows * columns + n / rows : n] = value;
+    if (image->precision == PRECISION_DOUBLE)
+        ((double complex *)image->pixels[patch])[n] = value;
+    else
+        ((float complex *)image->pixels[patch])[n] = (float complex)value;
+}
+
+/* By blocks into one patch, whose pixels begin at number `before` of `all`. */
+static enum status numbers_read(FILE *stream, const char *path, const struct array *array, const struct image *image,
+                                int patch, size_t before, size_t all)
+{
+    const struct grid *grid = &image->patches[patch];
+    const size_t rows = (size_t)grid->r_count, columns = (size_t)grid->x_count, count = rows * columns;
+    unsigned char bytes[BLOCK * 16];
+    for (size_t first = 0; first < count; first += BLOCK) {
+        const size_t wanted = count - first < BLOCK ? count - first : BLOCK;
+        const size_t found = fread(bytes, (size_t)array->size, wanted, stream);
+        for (size_t k = 0; k < found; k++) {
+            const size_t n = first + k;
+            pixel_set(image, patch, array->fortran && array->dimensions == 2 ? n % rows * columns + n / rows : n,
+                      number(array, bytes + k * (size_t)array->size));
+        }
+        if (found < wanted)
+            return status_set(STATUS_INVALID, "%s: ends after %zu of %zu numbers", path, before + first + found, all);
     }
     return STATUS_OK;
 }
 
-enum status npy_image_read(const char *path, const struct grid *grid, struct image_file *file)
+enum status npy_pixels_read(FILE *stream, const char *path, bool flat, const struct image *image)
 {
     struct array array;
+    const struct grid *grid = image->patches;
+    size_t all = 0, before = 0;
+    for (int k = 0; k < image->patch_count; k++)
+        all += (size_t)grid[k].r_count * (size_t)grid[k].x_count;
+    enum status status = head_read(stream, path, &array);
+    if (status != STATUS_OK)
+        return status;
+    const bool whole = flat && array.dimensions == 1 && array.shape[0] == (long long)all;
+    if (!whole
+        && (image->patch_count > 1 || array.dimensions == 1 || array.shape[0] != grid->r_count
+            || array.shape[1] != grid->x_count)) {
+        char shape[60];
+        snprintf(shape, sizeof shape, array.dimensions == 1 ? "[%lld]" : "[%lld, %lld]", array.shape[0],
+                 array.shape[1]);
+        if (image->patch_count > 1)
+            return status_set(STATUS_INVALID, "%s: the array is %s, the patches have [%zu] pixels", path, shape, all);
+        return status_set(STATUS_INVALID,
+                          "%s: the array is %s, the grid has %d ranges and %d places along the track, in this order",
+                          path, shape, grid->r_count, grid->x_count);
+    }
+    for (int k = 0; k < image->patch_count && status == STATUS_OK; k++) {
+        status = numbers_read(stream, path, &array, image, k, before, all);
+        before += (size_t)grid[k].r_count * (size_t)grid[k].x_count;
+    }
+    return status;
+}
+
+enum status npy_image_read(const char *path, const struct grid *grid, struct image_file *file)
+{
     *file = (struct image_file){.image.precision = PRECISION_DOUBLE, .origin = {.fc = NAN, .sound_speed = NAN}};
     struct stat place;
-    FILE *stream = NULL;
     if (stat(path, &place) == 0 && !S_ISREG(place.st_mode))
         return status_set(STATUS_INVALID, "%s: not a file; " ACCEPTED, path);
-    stream = fopen(path, "rbe");
+    FILE *stream = fopen(path, "rbe");
     if (!stream)
         return status_set(STATUS_INVALID, "%s: cannot be opened: %s", path, strerror(errno));
-    enum status status = head_read(stream, path, &array);
-    if (status == STATUS_OK && (array.shape[0] != grid->r_count || array.shape[1] != grid->x_count))
-        status = status_set(STATUS_INVALID,
-                            "%s: the array is [%lld, %lld], the grid has %d ranges and %d places along "
-                            "the track, in this order",
-                            path, array.shape[0], array.shape[1], grid->r_count, grid->x_count);
-    if (status == STATUS_OK) {
-        const size_t pixels = (size_t)grid->r_count * (size_t)grid->x_count;
-        file->patches = malloc(sizeof *file->patches);
-        file->image.pixels = calloc(1, sizeof *file->image.pixels);
-        file->image.patches = file->patches;
-        if (file->patches && file->image.pixels) {
-            file->image.patch_count = 1;
-            *file->patches = *grid;
-            file->image.pixels[0] = malloc(pixels * sizeof(double complex));
-        }
-        status = file->image.patch_count == 1 && file->image.pixels[0]
-                     ? numbers_read(stream, path, &array, file->image.pixels[0])
-                     : status_set(STATUS_FAILED, "%s: no memory for %zu pixels", path, pixels);
-    }
+    file->patches = malloc(sizeof *file->patches);
+    if (file->patches)
+        *file->patches = *grid;
+    enum status status = file->patches ? image_allocate(1, file->patches, PRECISION_DOUBLE, &file->image)
+                                       : status_set(STATUS_FAILED, "%s: no memory for its grid", path);
+    if (status == STATUS_OK)
+        status = npy_pixels_read(stream, path, false, &file->image);
     fclose(stream);
     if (status != STATUS_OK)
         image_file_close(file);

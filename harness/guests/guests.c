@@ -5,7 +5,7 @@
 
 enum { NAME_MOST = 200 }; /* file names of pictures hold it, and 255 characters at most */
 
-static const struct guest_kind *const kinds[] = {&guest_plugin};
+static const struct guest_kind *const kinds[] = {&guest_external, &guest_plugin};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* The newest first. */

@@ -14,7 +14,8 @@ struct guest_kind {
        `method` included, stays until the program ends. Errors: STATUS_INVALID naming place and cause. */
     enum status (*make)(const char *name, struct algorithm *algorithm);
 };
-extern const struct guest_kind guest_plugin; /* a shared object: plugin.c */
+extern const struct guest_kind guest_plugin;   /* a shared object: plugin.c */
+extern const struct guest_kind guest_external; /* any program: external.c */
 
 /* Make the algorithm that a SPEC names, unless the table has it, or it was made before; it is kept until the program
    ends. Only for a SPEC that the user gave: it runs foreign code. Errors: as `make`. */

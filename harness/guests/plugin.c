@@ -1,6 +1,7 @@
 /* Shared objects as algorithms: sasbench.h on their side, struct algorithm on ours. */
 #include <dlfcn.h>
 #include <errno.h>
+#include <math.h>
 #include <omp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -278,7 +279,8 @@ static struct work plugin_work(const void *data)
     const struct plugin_plan *plan = data;
     struct sas_work theirs = {.size = sizeof theirs};
     plan->plugin->theirs.work(plan->theirs, &theirs);
-    struct work work = {.flops = theirs.flops, .pairs = theirs.pairs, .bytes = theirs.bytes + plan->bytes};
+    struct work work = {.flops = fmax(theirs.flops, 0), .pairs = fmax(theirs.pairs, 0)}; /* no NAN, which is empty */
+    work.bytes = theirs.bytes + plan->bytes;
     snprintf(work.engine, sizeof work.engine, "%.*s", (int)sizeof theirs.engine,
              *theirs.engine ? theirs.engine : "plug-in");
     snprintf(work.skipped, sizeof work.skipped, "%.*s", (int)sizeof theirs.skipped, theirs.skipped);

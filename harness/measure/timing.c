@@ -12,6 +12,7 @@
 
 #include "common/clock.h"
 #include "echoes/echo_data.h"
+#include "guests/keeper.h"
 #include "imaging/imaging.h"
 
 #define THREADS_SLACK 1.1 /* of processor time over threads times run time, for clocks that tick differently */
@@ -139,11 +140,13 @@ static void trial_end(struct trial *trial)
         image_negate(&trial->imaging->image);
 }
 
-/* s of processor time that the process used. */
+/* s of processor time that the process used, and external programs. */
 static double busy_s(void)
 {
     struct timespec now;
-    return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) == 0 ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec : 0;
+    const double own =
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) == 0 ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec : 0;
+    return own + keepers_busy_s();
 }
 
 /* How long runs are repeated: by effort, and in one of several rounds. */
@@ -314,6 +317,8 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
                                 "a run of %s takes %g s, of the scalar reference loop %g s: the system's "
                                 "clock stands still",
                                 spec->algorithm->name, timing->run_min_s, timing->control_s);
+        else if (isnan(work->flops) && isnan(work->pairs)) /* an external program's, left empty */
+            status = STATUS_OK;
         else if (work->pairs != 0 && work->pairs != bounds.pairs)
             status = status_set(STATUS_FAILED, "%s: its work has %.9g pairs, must be 0 or %.9g", spec->algorithm->name,
                                 work->pairs, bounds.pairs);

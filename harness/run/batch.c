@@ -9,6 +9,7 @@
 
 #include "advise/check.h"
 #include "echoes/echo_data.h"
+#include "guests/external.h"
 #include "ranks/rank_folders.h"
 #include "ranks/ranks.h"
 #include "run/progress_line.h"
@@ -364,6 +365,7 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
     enum status status = folder_open(directory, batch);
     if (status == STATUS_OK) {
         supervisor_keeps(directory);
+        external_logs(directory);
         table_begin(stdout, rows > ROWS_MANY);
     }
     if (status == STATUS_OK && batch->threads > omp_get_num_procs())
