@@ -279,7 +279,7 @@ static struct work plugin_work(const void *data)
     const struct plugin_plan *plan = data;
     struct sas_work theirs = {.size = sizeof theirs};
     plan->plugin->theirs.work(plan->theirs, &theirs);
-    struct work work = {.flops = fmax(theirs.flops, 0), .pairs = fmax(theirs.pairs, 0)}; /* no NAN, which is empty */
+    struct work work = {.flops = theirs.flops, .pairs = fmax(theirs.pairs, 0)}; /* no NAN: only other guests leave it */
     work.bytes = theirs.bytes + plan->bytes;
     snprintf(work.engine, sizeof work.engine, "%.*s", (int)sizeof theirs.engine,
              *theirs.engine ? theirs.engine : "plug-in");
