@@ -3,8 +3,8 @@
 
        H(nu, delta) = sum over k of  h_k(delta) exp(j 2 pi nu (k - delta)).
 
-   Over a scene all fractions are equally likely, and errors that depend on delta scatter over the image. With c_0(nu) the mean of H over delta, and
-   < > the mean over the echoes' energy spectrum,
+   Over a scene all fractions are equally likely, and errors that depend on delta scatter over the image. With c_0(nu)
+   the mean of H over delta, and < > the mean over the echoes' energy spectrum,
 
        E^2 = 1 - |<c_0>|^2 / <mean over delta of |H|^2>
 

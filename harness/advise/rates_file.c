@@ -10,47 +10,8 @@
 #include "results/provenance.h"
 #include "advise/machine_rates.h"
 
-/* The k-th number of the file and its name; NULL behind the last. */
-static double *rate_at(struct rates *rates, int k, char name[48])
-{
-    static const char *const engines[] = {"general", "invariant"};
-    static const char *const kinds[READ_KINDS] = {"nearest", "line", "taps", "branches"};
-    const struct {
-        const char *name;
-        double *rate;
-    } others[] = {{"compress", &rates->compress},
-                  {"filter", &rates->filter},
-                  {"image", &rates->image},
-                  {"general_put", &rates->put[0]},
-                  {"invariant_put", &rates->put[1]},
-                  {"migrate_records", &rates->migrate[MIGRATION_RECORDS]},
-                  {"migrate_spread", &rates->migrate[MIGRATION_SPREAD]},
-                  {"migrate_blocks", &rates->migrate[MIGRATION_BLOCKS]},
-                  {"migrate_terms", &rates->migrate[MIGRATION_TERMS]},
-                  {"migrate_focus", &rates->migrate[MIGRATION_FOCUS]},
-                  {"doubled", &rates->doubled},
-                  {"noise", &rates->noise}};
-    const struct {
-        const char *name;
-        double (*rates)[READ_KINDS]; /* [2] */
-    } pairs[] = {
-        {"pair", rates->pair}, {"value", rates->value}, {"unit", rates->unit}, {"unit_value", rates->unit_value}};
-    const int of_pairs = 4 * 2 * READ_KINDS, engine = k / (4 * READ_KINDS), kind = k / 4 % READ_KINDS;
-    if (k < of_pairs) {
-        snprintf(name, 48, "%s_%s_%s", engines[engine], kinds[kind], pairs[k % 4].name);
-        return &pairs[k % 4].rates[engine][kind];
-    }
-    k -= of_pairs;
-    if (k < 2 * READ_KINDS) {
-        snprintf(name, 48, "general_%s_apart%s", kinds[k / 2], k % 2 ? "_value" : "");
-        return &(k % 2 ? rates->apart_value : rates->apart)[k / 2];
-    }
-    k -= 2 * READ_KINDS;
-    if (k >= (int)(sizeof others / sizeof *others))
-        return NULL;
-    snprintf(name, 48, "%s", others[k].name);
-    return others[k].rate;
-}
+/* The file has the struct's numbers in their order: no other program reads it, and another build measures anew. */
+enum { RATES = sizeof(struct rates) / sizeof(double) };
 
 void machine_rates_path(char *path, size_t size)
 {
@@ -74,24 +35,17 @@ void machine_rates_use(bool *found)
 {
     char path[4096], owner[300];
     struct csv csv = {0};
-    struct rates rates = {.doubled = NAN};
+    double numbers[RATES];
+    struct rates rates;
     bool whole = false;
     machine_rates_path(path, sizeof path);
     owner_format(owner, sizeof owner);
     if (*path && csv_read(path, CSV_TAIL_DROP, &csv) == STATUS_OK) {
         const char *of = csv_comment(&csv, "machine");
-        const int name = csv_column(&csv, "rate"), value = csv_column(&csv, "value");
-        whole = of && strcmp(of, owner) == 0 && name >= 0 && value >= 0;
-        for (int k = 0; whole; k++) {
-            char wanted[48];
-            double *rate = rate_at(&rates, k, wanted);
-            int row = 0;
-            if (!rate)
-                break;
-            while (row < csv.row_count && strcmp(csv_cell(&csv, row, name), wanted) != 0)
-                row++;
-            whole = row < csv.row_count && csv_number(csv_cell(&csv, row, value), rate);
-        }
+        whole = of && strcmp(of, owner) == 0 && csv.row_count == RATES;
+        for (int k = 0; k < RATES && whole; k++)
+            whole = csv_number(csv_cell(&csv, k, 0), &numbers[k]);
+        memcpy(&rates, numbers, sizeof rates);
         whole = whole && rates_plausible(&rates);
     }
     csv_free(&csv);
@@ -118,11 +72,11 @@ enum status machine_rates_keep(const struct rates *rates)
         status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    fprintf(file.stream, "# sasbench rates 1\n# machine: %s\nrate,value\n", owner);
-    struct rates copy = *rates;
-    char name[48];
-    for (int k = 0; rate_at(&copy, k, name); k++)
-        fprintf(file.stream, "%s,%.9g\n", name, *rate_at(&copy, k, name));
+    fprintf(file.stream, "# sasbench rates 2\n# machine: %s\nrate\n", owner);
+    double numbers[RATES];
+    memcpy(numbers, rates, sizeof numbers);
+    for (int k = 0; k < RATES; k++)
+        fprintf(file.stream, "%.9g\n", numbers[k]);
     return text_file_close(&file, status);
 }
 

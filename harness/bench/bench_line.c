@@ -98,8 +98,8 @@ static void plans_make(struct plans *p)
     }
 }
 
-/* One forward and one inverse transform of rows x columns in place, float, planned by measurement. Errors: STATUS_FAILED
-   without memory or threads. */
+/* One forward and one inverse transform of rows x columns in place, float, planned by measurement. Errors:
+   STATUS_FAILED without memory or threads. */
 static enum status fft_seconds(int rows, int columns, int threads, struct fft_seconds *seconds)
 {
     struct plans p = {.rows = rows, .columns = columns, .threads = threads};

@@ -8,7 +8,8 @@
 
 enum { CONTROL_RUNS = 2 }; /* the loop's runs in turn; the faster one is free of most interruptions */
 
-/* The scalar reference loop's time beside measurements of one problem. Made by control_begin, released by control_end, which accepts zeroes. The first measurement chooses the pairs. */
+/* The scalar reference loop's time beside measurements of one problem. Made by control_begin, released by control_end,
+   which accepts zeroes. The first measurement chooses the pairs. */
 struct control {
     struct problem
         problem; /* once open, with turned grids turned back: the loop's rows and columns are along x and r only */
