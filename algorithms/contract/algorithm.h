@@ -38,10 +38,6 @@ struct grid {
 struct vector grid_point(const struct grid *grid, double i, double j);
 /* The inverse: (x', r', 0) of a place in the track's axes. */
 struct vector grid_coordinates(const struct grid *grid, double x, double r);
-/* Does a place of the track's axes lie on a pixel, a step wide along both axes? */
-bool grid_holds(const struct grid *grid, double x, double r);
-/* The range of x in the track's axes, *first to *last (m), that the pixels cover. */
-void grid_columns(const struct grid *grid, double *first, double *last);
 
 struct target {
     double x, r;              /* m */

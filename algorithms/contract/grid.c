@@ -10,24 +10,6 @@ struct vector grid_coordinates(const struct grid *grid, double x, double r)
     return (struct vector){x * cosine - r * sine, x * sine + r * cosine, 0};
 }
 
-bool grid_holds(const struct grid *g, double x, double r)
-{
-    const struct vector at = grid_coordinates(g, x, r);
-    return fabs(at.x - g->x_first - (g->x_count - 1) * g->x_step / 2) <= g->x_count * g->x_step / 2
-           && fabs(at.y - g->r_first - (g->r_count - 1) * g->r_step / 2) <= g->r_count * g->r_step / 2;
-}
-
-void grid_columns(const struct grid *grid, double *first, double *last)
-{
-    *first = INFINITY;
-    *last = -INFINITY;
-    for (int k = 0; k < 4; k++) {
-        const double x = grid_point(grid, k / 2 * grid->r_count - 0.5, k % 2 * grid->x_count - 0.5).x;
-        *first = fmin(*first, x);
-        *last = fmax(*last, x);
-    }
-}
-
 struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
                             enum precision precision)
 {
