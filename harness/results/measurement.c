@@ -14,8 +14,6 @@
     {#name, COLUMN_REAL, offsetof(struct row, name), unit, better, class, {of_float, of_double}, relative, __VA_ARGS__}
 #define M_COLUMN(kind, name)                COLUMN(kind, measurement, name)
 #define M_METRIC(name, unit, better, ...)   METRIC(measurement, name, unit, better, __VA_ARGS__)
-#define M_LATER(kind, name) \
-    {#name, COLUMN_##kind, offsetof(struct measurement, name), .unit = NULL, .later = true}
 #define T_COLUMN(kind, name)                COLUMN(kind, target_row, name)
 #define T_METRIC(name, unit, better, ...)   METRIC(target_row, name, unit, better, CLASS_QUALITY, __VA_ARGS__, {NULL})
 /* clang-format on */
@@ -62,17 +60,9 @@ const struct column measurement_columns[] = {
              {"contrast", "", 1, NULL, .brief = "contr.", .of = SHOWN_WITHOUT_TARGETS}),
     M_METRIC(peak_over_median, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-2,
              {"peak/median", "", 1, NULL, .brief = "peak", .of = SHOWN_WITHOUT_TARGETS}),
-    M_LATER(TEXT, host),
-    M_LATER(REAL, load),
-    {"error_flown",
-     COLUMN_REAL,
-     offsetof(struct measurement, error_flown),
-     "1",
-     BETTER_LOWER,
-     CLASS_QUALITY,
-     {2e-6, 1e-9},
-     1e-3,
-     .later = true},
+    M_COLUMN(TEXT, host),
+    M_COLUMN(REAL, load),
+    M_METRIC(error_flown, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3, {NULL}),
     {.name = NULL},
 };
 

@@ -56,7 +56,6 @@ struct column {
         bool wide;                /* on a wide terminal only */
         enum { SHOWN_OF_ALL, SHOWN_OF_TARGETS, SHOWN_WITHOUT_TARGETS } of; /* the last two share one place */
     } shown;
-    bool later; /* files of earlier versions end before it */
 };
 extern const struct column measurement_columns[], target_columns[];
 
