@@ -33,10 +33,11 @@ static const char *cell_of(const struct csv *csv, const char *algorithm, const c
 /* Neither a process of the tests' programs is left, nor a folder of theirs. */
 static void assert_nothing_left(void)
 {
-    assert_shell("for k in $(seq 100); do ! ps -eo args | grep -q '^python3 bad.py\\|^sleep 31557.25' && "
-                 "! ls -d sasbench-* && exit 0; sleep .1; done; ps -eo pid,args | grep ' python3 bad.py\\|sleep 31557' "
-                 ">&2; exit 1",
-                 0);
+    assert_shell(
+        "for k in $(seq 100); do ! ps -eo args | grep -q '^[^ ]*python3 bad.py\\|^sleep 31557.25' && "
+        "! ls -d sasbench-* && exit 0; sleep .1; done; ps -eo pid,args | grep '[ /]python3 bad.py\\|sleep 31557' "
+        ">&2; exit 1",
+        0);
 }
 
 static void faults_lose_their_row(void **state)
@@ -72,18 +73,29 @@ static void faults_lose_their_row(void **state)
     assert_nothing_left();
 }
 
-/* More processors than threads. */
+/* More processors than threads, as soon as it gets them: others may have them. */
 static void threads_are_counted(void **state)
 {
-    struct csv csv;
     (void)state;
-    if (sysconf(_SC_NPROCESSORS_ONLN) < 2)
-        skip();
-    specs_run("--threads 1", "-a 'external:python3 bad.py threads'", "crowd");
-    assert_int_equal(csv_read(path_in("crowd/measurements.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
-    assert_string_equal(csv_cell(&csv, 0, csv_column(&csv, "status")), "failed");
-    assert_non_null(strstr(csv_cell(&csv, 0, csv_column(&csv, "reason")), "processors busy with --threads 1"));
-    csv_free(&csv);
+    for (int attempt = 0; attempt < 4 && sysconf(_SC_NPROCESSORS_ONLN) > 1; attempt++) {
+        struct csv csv;
+        assert_shell("rm -rf crowd", 0);
+        specs_run("--threads 1", "-a 'external:python3 bad.py threads'", "crowd");
+        char *processors = support_read("processors");
+        assert_non_null(processors);
+        const double had = atof(processors);
+        free(processors);
+        assert_int_equal(csv_read(path_in("crowd/measurements.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
+        const bool failed = strcmp(csv_cell(&csv, 0, csv_column(&csv, "status")), "failed") == 0;
+        if (failed)
+            assert_non_null(strstr(csv_cell(&csv, 0, csv_column(&csv, "reason")), "processors busy with --threads 1"));
+        csv_free(&csv);
+        assert_true(failed || had < 1.5);
+        if (failed)
+            return;
+    }
+    print_message("[  SKIPPED ] the program never had more than 1.5 processors\n");
+    skip();
 }
 
 /* However ours ends. */
@@ -98,9 +110,9 @@ static void ends_with_us(void **state)
             program_start((const char *const[ARGUMENTS_MAX]){"run", "study/quick", "-a", "external:python3 bad.py hang",
                                                              "-a", "external:python3 bad.py bomb", "-o", "x"},
                           sink, sink);
-        assert_shell(
-            "for k in $(seq 200); do ps -eo args | grep -q '^python3 bad.py hang' && exit 0; sleep .1; done; exit 1",
-            0);
+        assert_shell("for k in $(seq 200); do ps -eo args | grep -q '^[^ ]*python3 bad.py hang' && exit 0; sleep .1; "
+                     "done; exit 1",
+                     0);
         kill(signals[k] == SIGINT ? -child : child, signals[k]); /* Ctrl-C reaches the group */
         assert_int_equal(waitpid(child, &status, 0), child);
         fclose(sink);
