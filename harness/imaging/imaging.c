@@ -89,8 +89,8 @@ enum status imaging_form(const struct spec *spec, const struct problem *problem,
 }
 
 /* Where no pairs are summed at least a product a sample, or a pair where these are fewer: samples that no pixel needs
-   may be left out. Not twice the work of summing every sample for each pair and transforming each record: ours take .001 to
-   .8 of that. */
+   may be left out. Not twice the work of summing every sample for each pair and transforming each record: ours take
+   .001 to .8 of that. */
 struct work_bounds work_bounds(const struct problem *problem, const struct work *work)
 {
     const struct acquisition *a = problem->acquisition;
