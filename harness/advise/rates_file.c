@@ -35,7 +35,7 @@ void machine_rates_use(bool *found)
 {
     char path[4096], owner[300];
     struct csv csv = {0};
-    double numbers[RATES];
+    double numbers[RATES] = {0};
     struct rates rates;
     bool whole = false;
     machine_rates_path(path, sizeof path);

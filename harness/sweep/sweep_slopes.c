@@ -73,9 +73,10 @@ static void slope_write(const struct point *points, const double *rates, const d
    asymptotic order. Settings without upsampling count by themselves. */
 enum status slopes_write(const struct points *points, bool told, FILE *file)
 {
-    double *rates = calloc(2 * (size_t)points->count + 1, sizeof *rates), *errors = rates + points->count;
+    double *rates = calloc(2 * (size_t)points->count + 1, sizeof *rates);
     if (!rates)
         return status_set(STATUS_FAILED, "%s: no memory for %d rows", points->scene, points->count);
+    double *errors = rates + points->count;
     if (told)
         printf("\n%s: slopes of log error against log rate (beta + 1, or the setting itself)\n"
                "  %-36s %-8s %-18s %6s  %6s  %7s  %7s  %8s\n",
