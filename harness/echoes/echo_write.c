@@ -130,6 +130,7 @@ struct stream {
     const char *path;
     const struct acquisition *acquisition;
     const struct sample_source *source;
+    int most; /* pings in memory */
 };
 
 /* Make some pings, as they are stored. */
@@ -148,8 +149,8 @@ static bool stream_add(struct writer *writer)
 {
     const struct stream *stream = writer->with;
     const struct acquisition *a = stream->acquisition;
-    const size_t each = (size_t)a->samples * (size_t)a->receivers, bytes = each * sizeof(double complex);
-    const int most = 1 + STREAM_BYTES / (int)(bytes < STREAM_BYTES ? bytes : STREAM_BYTES);
+    const size_t bytes = (size_t)a->samples * (size_t)a->receivers * sizeof(double complex);
+    const int most = stream->most;
     const struct set73 set = {
         "samples", false, PRECISION_DOUBLE, 3, {(size_t)a->pings, (size_t)a->receivers, (size_t)a->samples}};
     const int file = open(writer->temporary, O_RDWR | O_CLOEXEC);
@@ -187,17 +188,24 @@ static enum status stream_whole(const struct stream *stream, const struct echo_n
     return status;
 }
 
-enum status echo_file_stream(const char *path, const struct acquisition *a, const struct sample_source *source,
-                             const struct echo_notes *notes)
+enum status echo_file_blocks(const char *path, const struct acquisition *a, const struct sample_source *source,
+                             int most_pings, const struct echo_notes *notes)
 {
-    struct stream stream = {path, a, source};
+    struct stream stream = {path, a, source, most_pings};
     struct writer writer;
-    if (writer_fits_v5(samples_bytes(a, PRECISION_DOUBLE)))
-        return stream_whole(&stream, notes);
-    if (begin(&writer, path, a, samples_bytes(a, PRECISION_DOUBLE)) != STATUS_OK)
+    if (begin(&writer, path, a, SIZE_MAX) != STATUS_OK)
         return writer.status;
     acquisition_write(&writer, a, notes);
     writer.add = stream_add;
     writer.with = &stream;
     return writer_close(&writer);
+}
+
+enum status echo_file_stream(const char *path, const struct acquisition *a, const struct sample_source *source,
+                             const struct echo_notes *notes)
+{
+    const size_t bytes = samples_bytes(a, PRECISION_DOUBLE), each = bytes / (size_t)a->pings;
+    const int most = 1 + STREAM_BYTES / (int)(each < STREAM_BYTES ? each : STREAM_BYTES);
+    return writer_fits_v5(bytes) ? stream_whole(&(struct stream){path, a, source, a->pings}, notes)
+                                 : echo_file_blocks(path, a, source, most, notes);
 }

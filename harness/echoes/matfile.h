@@ -51,6 +51,10 @@ struct sample_source {
 enum status echo_file_stream(const char *path, const struct acquisition *acquisition,
                              const struct sample_source *source, const struct echo_notes *notes);
 
+/* The same of version 7.3, at most so many pings at a time. */
+enum status echo_file_blocks(const char *path, const struct acquisition *acquisition,
+                             const struct sample_source *source, int most_pings, const struct echo_notes *notes);
+
 /* Can a file be made here? Asked before long work. Errors: STATUS_INVALID. */
 enum status matfile_place(const char *path);
 

@@ -74,11 +74,65 @@ static void noise_is_that_of_the_stream(void **state)
     scene_free(&scene);
 }
 
+struct failing {
+    struct simulation *simulation;
+    int fails; /* at this ping */
+};
+
+static enum status pings_make(void *with, int first, int count, double complex *samples)
+{
+    const struct failing *f = with;
+    return first + count > f->fails ? status_set(STATUS_FAILED, "planted")
+                                    : simulation_pings(f->simulation, first, count, samples);
+}
+
+/* A file that is written some pings at a time has the bits of one written whole, whatever the power of two of the
+   samples; a source that fails leaves none. */
+static void blocks_are_the_whole(void **state)
+{
+    (void)state;
+    static const char *const targets[] = {"r = 20.0; }", "r = 20.0; amplitude = 1e200; }"};
+    static const int most[] = {1, 4, 6, 100};
+    for (size_t n = 0; n < 2 * (sizeof most / sizeof *most); n++) {
+        struct scene scene;
+        struct simulation *simulation;
+        struct acquisition a, b;
+        struct echoes made = echoes_of("r = 20.0; }", targets[n % 2], 0.25, &scene), whole, blocks;
+        const struct echo_notes notes = scene_notes(&scene);
+        assert_true((made.exponent != 0) == (n % 2 == 1));
+        assert_int_equal(echo_file_write(path_of("whole.mat"), &made, &notes), STATUS_OK);
+        assert_int_equal(simulation_open(&scene, 1, &simulation), STATUS_OK);
+        struct failing from = {simulation, scene.acquisition.pings};
+        const struct sample_source source = {simulation_exponent(simulation), pings_make, &from};
+        remove(path_of("blocks.mat"));
+        for (from.fails = 5; from.fails <= 6; from.fails++) {
+            assert_int_equal(
+                echo_file_blocks(path_of("blocks.mat"), &scene.acquisition, &source, most[n / 2], &notes),
+                from.fails < 6 ? STATUS_FAILED : STATUS_OK);
+            assert_int_equal(support_exists("blocks.mat"), from.fails == 6);
+        }
+        simulation_close(simulation);
+        assert_int_equal(echo_file_read(path_of("whole.mat"), &a, &whole), STATUS_OK);
+        assert_int_equal(echo_file_read(path_of("blocks.mat"), &b, &blocks), STATUS_OK);
+        assert_true(a.pings == b.pings && a.receivers == b.receivers && a.samples == b.samples);
+        assert_int_equal(whole.exponent, blocks.exponent);
+        assert_memory_equal(whole.samples, blocks.samples,
+                            (size_t)(a.pings * a.receivers * a.samples) * sizeof(double complex));
+        acquisition_free(&a);
+        acquisition_free(&b);
+        echoes_free(&whole);
+        echoes_free(&blocks);
+        echoes_free(&made);
+        scene_free(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(sampled_chirps_are_weighted, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(noise_is_that_of_the_stream, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(blocks_are_the_whole, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("simulate", tests, NULL, NULL);
 }
