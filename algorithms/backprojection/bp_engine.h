@@ -70,14 +70,15 @@ enum status bp_met_find(struct bp *bp);
 enum status bp_met_narrow(struct bp *bp);
 /* The wanted part of the image as a problem of its own; *part is its grid where there is a window. */
 struct problem bp_wanted(const struct bp *bp, struct grid *part);
+int bp_pings_wanted(const struct bp *bp); /* by its pairs */
 /* Pings whose records are read. */
 int bp_met_count(const struct bp *bp);
 
 /* The most neighbouring pings that are summed together; the first ping is a multiple of this number. */
 int bp_pings_joined(const struct acquisition *acquisition);
 
-/* Memory of bp->engines. With a window, unused parts are 0 and take no room. */
-void *bp_part_allocate(struct bp *bp, size_t bytes);
+/* Memory of bp->engines. With a window, unused parts are 0 and take no room: it uses so many runs of so many bytes. */
+void *bp_part_allocate(struct bp *bp, size_t bytes, size_t runs, size_t run);
 
 static inline size_t real_size(enum precision precision)
 {

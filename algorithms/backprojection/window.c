@@ -1,14 +1,16 @@
 /* The part of a problem for a window: its records, and memory that it needs a part of (bp_engine.h). */
+#include <math.h>
 #include <stdlib.h>
 
 #include "backprojection/bp_engine.h"
 #include "backprojection/pairs/pairs.h"
 
-void *bp_part_allocate(struct bp *bp, size_t bytes)
+void *bp_part_allocate(struct bp *bp, size_t bytes, size_t runs, size_t run)
 {
+    static const double PAGE = 4096; /* of memory: a run begins anywhere in one */
     if (!bp->problem.window)
         return store_room(&bp->engines, bytes, 1, 1);
-    bp->engines.bytes += (double)bytes;
+    bp->engines.bytes += fmin((double)bytes, (double)runs * ((double)run + PAGE));
     return store_keep(&bp->engines, memory_sparse(bytes), memory_sparse_free);
 }
 
@@ -21,6 +23,16 @@ struct problem bp_wanted(const struct bp *bp, struct grid *part)
         wanted.window = NULL;
     }
     return wanted;
+}
+
+int bp_pings_wanted(const struct bp *bp)
+{
+    struct grid part;
+    const struct problem wanted = bp_wanted(bp, &part);
+    bool *met = malloc((size_t)wanted.acquisition->pings * sizeof *met);
+    const int count = met ? pings_met(&wanted, met) : wanted.acquisition->pings;
+    free(met);
+    return count;
 }
 
 /* Pings that may be summed together are read together. */

@@ -8,5 +8,8 @@
    simulated or read, and in the image's precision; or, if larger, a copy of the image while it is written. The memory
    of threads beyond the first is not in it. */
 double process_bytes(const struct problem *problem, double plan_bytes);
+/* Of a process that forms the problem's window from an echo file: with the pings that it holds, and the window's image
+   twice, as formed and as written. */
+double process_tile_bytes(const struct problem *problem, double plan_bytes, double pings);
 
 #endif

@@ -190,11 +190,20 @@ static enum status check_usage(const struct task *task)
     if (task->range && !output_is_picture(task->output))
         return status_set(STATUS_INVALID, "image: --range %s applies to pictures; -o FILE.png or FILE.svg is needed",
                           task->range);
-    if (task->tile && (output_is_picture(task->output) || task->verify))
-        return status_set(STATUS_INVALID, "image: --tile %s fills a file of numbers: -o FILE.mat, without --verify",
-                          task->tile);
-    if (task->shard && !task->tile)
-        return status_set(STATUS_INVALID, "image: --shard %s shares tiles; --tile NxM is needed", task->shard);
+    if (task->tile && task->memory)
+        return status_set(STATUS_INVALID, "image: one of --tile %s and --memory %s is needed, not both", task->tile,
+                          task->memory);
+    if (image_is_tiled(task) && (output_is_picture(task->output) || task->verify))
+        return status_set(STATUS_INVALID, "image: --%s %s fills a file of numbers: -o FILE.mat, without --verify",
+                          task->tile ? "tile" : "memory", task->tile ? task->tile : task->memory);
+    if (task->shard && !image_is_tiled(task))
+        return status_set(STATUS_INVALID, "image: --shard %s shares tiles; --tile NxM or --memory BYTES is needed",
+                          task->shard);
+    if (task->memory && !task->echoes)
+        return status_set(STATUS_INVALID,
+                          "image: --memory %s is for tiles of an echo file, --echoes FILE.mat (a "
+                          "scene's is written by `simulate`)",
+                          task->memory);
     return output_is_picture(task->output) ? picture_check("image", task->output) : output_check("image", task->output);
 }
 
@@ -270,7 +279,7 @@ enum status command_image(const struct task *task)
         return status;
     warn(&task->specs[0], &scene);
     origin_fill(task, &scene, &origin);
-    if (task->tile) {
+    if (image_is_tiled(task)) {
         status = image_tiles(task, &scene, &origin);
         scene_free(&scene);
         return status;

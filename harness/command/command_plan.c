@@ -23,28 +23,6 @@ static enum status error_parse(const char *text, double *error)
                : status_set(STATUS_INVALID, "plan: --error is '%s', must be a number above 0, at most 1", text);
 }
 
-/* "4G", "2GB", "512MiB": bytes. */
-static enum status memory_parse(const char *text, double *bytes)
-{
-    static const char prefixes[] = "kMGTK"; /* KiB, and kB */
-    const char *end = text ? number_read(text, bytes) : "", *prefix = end && *end ? strchr(prefixes, *end) : NULL;
-    if (!text)
-        *bytes = 4e9;
-    if (prefix) {
-        const bool binary = end[1] == 'i';
-        *bytes *= pow(binary ? 1024 : 1000, (double)((prefix - prefixes) % 4) + 1);
-        end += 1 + binary;
-    }
-    if (end && *end == 'B')
-        end++;
-    return end && !*end && *bytes > 0 && *bytes < INFINITY
-               ? STATUS_OK
-               : status_set(STATUS_INVALID,
-                            "plan: --memory is '%s', must be bytes above 0: 4e9, or with k, M, G, T, Ki, Mi, Gi or Ti "
-                            "and B behind, as 2GB, 512MiB",
-                            text);
-}
-
 /* As options of `image`, to be taken from the terminal. */
 static void source_format(const struct task *task, char *text, size_t size)
 {
@@ -122,7 +100,7 @@ enum status command_plan(const struct task *task)
         return status_set(STATUS_INVALID, "plan: one of --error and --time is needed, not both");
     enum status status = error_parse(task->error, &budget.error);
     if (status == STATUS_OK)
-        status = memory_parse(task->memory, &budget.bytes);
+        status = memory_parse("plan", task->memory ? task->memory : "4G", &budget.bytes);
     if (status == STATUS_OK)
         status = task_scenes("plan", task, 0, NULL, &scene, &count);
     if (status == STATUS_OK)

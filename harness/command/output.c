@@ -1,4 +1,4 @@
-/* -o and --range of commands, pictures, and an image's origin on the terminal. */
+/* -o, --range and --memory of commands, pictures, and an image's origin on the terminal. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -52,6 +52,25 @@ enum status range_parse(const char *command, const char *text, double *range_db)
     if (!end || *end || !(*range_db >= 1 && *range_db <= 400))
         return status_set(STATUS_INVALID, "%s: --range is '%s', must be a number of dB from 1 to 400", command, text);
     return STATUS_OK;
+}
+
+enum status memory_parse(const char *command, const char *text, double *bytes)
+{
+    static const char prefixes[] = "kMGTK"; /* KiB, and kB */
+    const char *end = number_read(text, bytes), *prefix = end && *end ? strchr(prefixes, *end) : NULL;
+    if (prefix) {
+        const bool binary = end[1] == 'i';
+        *bytes *= pow(binary ? 1024 : 1000, (double)((prefix - prefixes) % 4) + 1);
+        end += 1 + binary;
+    }
+    if (end && *end == 'B')
+        end++;
+    return end && !*end && *bytes > 0 && *bytes < INFINITY
+               ? STATUS_OK
+               : status_set(STATUS_INVALID,
+                            "%s: --memory is '%s', must be bytes above 0: 4e9, or with k, M, G, T, Ki, Mi, Gi or Ti "
+                            "and B behind, as 2GB, 512MiB",
+                            command, text);
 }
 
 enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,

@@ -26,6 +26,8 @@ enum status picture_check(const char *command, const char *output);
 bool output_is_picture(const char *output); /* by its extension; NULL is none */
 /* --range: dB below the peak; NULL is the default. Errors: STATUS_INVALID. */
 enum status range_parse(const char *command, const char *text, double *range_db);
+/* --memory: "4G", "2GB", "512MiB" as bytes. Errors: STATUS_INVALID. */
+enum status memory_parse(const char *command, const char *text, double *bytes);
 /* Draw an image, with the points of a scene (NULL: none) named in it; `named`: the user gave the path. Errors: as
    plot_image. */
 enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,
@@ -59,8 +61,8 @@ enum status command_image(const struct task *task);
 /* Print those of conditions that warn and are not met. */
 struct condition;
 void warnings_print(const struct condition *list, int count);
-/* `image --tile`: form the tiles that its file lacks. */
-struct image_origin;
+/* `image --tile`, or --memory: form the tiles that its file lacks. */
+bool image_is_tiled(const struct task *task);
 enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin);
 enum status command_filter(const struct task *task);
 enum status command_merge(const struct task *task);

@@ -1,4 +1,4 @@
-/* `image --tile`: an image formed tile by tile into a file that keeps what is done (echoes/mat_tiles.h). */
+/* `image --tile` and --memory: an image in tiles, in a file that keeps what is done (echoes/mat_tiles.h). */
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
@@ -8,6 +8,7 @@
 
 #include "choice/choice.h"
 #include "command/task.h"
+#include "command/tile_size.h"
 #include "common/memory.h"
 #include "echoes/echo_data.h"
 #include "echoes/mat_tiles.h"
@@ -269,6 +270,29 @@ static enum status tile_try(const struct spec *spec, const struct scene *scene, 
     return status;
 }
 
+/* --memory: all ranks and shards choose the same tile. */
+static enum status memory_take(const struct task *task, const struct scene *scene, struct tiles *tiles)
+{
+    double bytes;
+    struct tile_cost cost;
+    enum status status = memory_parse("image", task->memory, &bytes);
+    if (status != STATUS_OK)
+        return status;
+    progress_line(false, "%s: tiles for %s", scene->name, task->memory);
+    status = tile_choose(&task->specs[0], scene, bytes, tiles, &cost);
+    progress_line_clear();
+    if (status == STATUS_OK && ranks_number() == 0)
+        printf("%s: --tile %dx%d, %d in all; a process takes up to %s and reads up to %d of %d pings a tile\n",
+               tiles->path, tiles->columns, tiles->rows, tiles_count(tiles),
+               cell_significant(1e-6 * cost.bytes, " MB").text, cost.pings, scene->acquisition.pings);
+    return status;
+}
+
+bool image_is_tiled(const struct task *task)
+{
+    return task->tile || task->memory;
+}
+
 enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin)
 {
     const struct spec *spec = &task->specs[0];
@@ -285,7 +309,7 @@ enum status image_tiles(const struct task *task, const struct scene *scene, cons
     bool sealed = false;
     enum status status = shard_parse("image", task->shard, &shard);
     if (status == STATUS_OK)
-        status = tile_parse(task->tile, &tiles);
+        status = task->tile ? tile_parse(task->tile, &tiles) : memory_take(task, scene, &tiles);
     if (status == STATUS_OK)
         status = tile_try(spec, scene, &tiles);
     if (status != STATUS_OK)

@@ -192,7 +192,10 @@ static enum status general_plan(struct bp *bp)
         const struct ping_box *box = &general->boxes[a->pings / 2];
         size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count;
         general->along_x[k] = lines_cost(box, grid, true, 1) < lines_cost(box, grid, false, 1);
-        general->sums[k] = bp_part_allocate(bp, 2 * pixels * size);
+        const struct pixel_window w = problem_window(problem, k);
+        const size_t rows = (size_t)w.rows, columns = (size_t)w.columns;
+        general->sums[k] = bp_part_allocate(bp, 2 * pixels * size, 2 * (general->along_x[k] ? rows : columns),
+                                            (general->along_x[k] ? columns : rows) * size);
         if (!general->sums[k])
             return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
     }

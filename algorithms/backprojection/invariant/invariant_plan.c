@@ -338,8 +338,9 @@ static enum status plan_patch(struct bp *bp, const struct straight_track *track,
     const size_t residues = (size_t)raster_residues(raster);
     const struct pixel_window w = problem_window(&bp->problem, k);
     raster->shown = (struct pair_span){w.column / raster->ratio, (w.column + w.columns - 1) / raster->ratio + 1};
-    in->sums[k] = bp_part_allocate(bp, 2 * (size_t)grid->r_count * residues * (size_t)in->strides[k]
-                                           * real_size(bp->problem.precision));
+    const size_t size = real_size(bp->problem.precision), shown = (size_t)(raster->shown.end - raster->shown.begin);
+    in->sums[k] = bp_part_allocate(bp, 2 * (size_t)grid->r_count * residues * (size_t)in->strides[k] * size,
+                                   2 * (size_t)w.rows * residues, shown * size);
     if (!in->sums[k])
         return status_set(STATUS_FAILED, "no memory for the sums of %d x %d pixels", grid->x_count, grid->r_count);
     const size_t shifts = (size_t)BP_ENTRIES(raster->pings + raster->residue_columns);
@@ -369,8 +370,10 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
     struct arena arena = {NULL, 0};
     scratch_take(&arena, lengths, size);
     const size_t per_thread = arena.used;
-    in->slab_re = bp_part_allocate(bp, values * size);
-    in->slab_im = bp_part_allocate(bp, values * size);
+    const size_t rows = (size_t)in->receivers * in->slab_rows;
+    const size_t run = bp->problem.window ? (size_t)(bp_pings_wanted(bp) + 2 * in->slab.lead) * size : 0;
+    in->slab_re = bp_part_allocate(bp, values * size, rows, run);
+    in->slab_im = bp_part_allocate(bp, values * size, rows, run);
     in->tile_bytes = (tile + 63) / 64 * 64;
     in->tiles = store_room(store, threads, in->tile_bytes, 1.0 / (double)threads);
     in->tables = store_room(store, threads, per_thread, 1.0 / (double)threads);

@@ -9,24 +9,24 @@
 #include "imaging/imaging.h"
 #include "choice/choice.h"
 #include "choice/process.h"
-#include "scene/scene.h"
+#include "scene/simulate.h"
 #include "tests/command/program.h"
 
 /* Measured over said: 0.86 to 1.08. */
 static const double LEAST = 0.8, MOST = 1.2;
 
-/* The most that lay in memory of a process that images a scene with one thread; what this one takes is a part of it. */
-static double child_bytes(const char *scene, const char *spec)
+/* The most that lay in memory of a process, whose words go to the file "said"; what this one takes is a part of it. */
+static double child_bytes(const char *const *arguments)
 {
-    const char *const arguments[ARGUMENTS_MAX] = {"image", "--scene", scene, "-a", spec, "-o", "x.mat", "-t", "1"};
     int status;
     struct rusage usage;
-    FILE *nothing = fopen("/dev/null", "w");
-    assert_non_null(nothing);
-    const pid_t child = program_start(arguments, nothing, nothing);
+    FILE *said = fopen(path_in("said"), "w");
+    assert_non_null(said);
+    const pid_t child = program_start(arguments, said, said);
     assert_int_equal(wait4(child, &status, 0, &usage), child);
-    fclose(nothing);
-    assert_int_equal(status, 0);
+    fclose(said);
+    if (status != 0)
+        fail_msg("%s", support_read("said"));
     return 1024.0 * (double)usage.ru_maxrss;
 }
 
@@ -61,7 +61,8 @@ static void processes_take_what_plans_say(void **state)
                            "image = { x = { first = -0.5; step = 1e-3; count = 1500; };\n"
                            "          r = { first = 19.5; step = 1e-3; count = 1500; }; };\n");
     for (int k = 0; k < SCENES * SPECS; k++) /* before this process grows, of which the children begin as copies */
-        measured[k / SPECS][k % SPECS] = child_bytes(scenes[k / SPECS], specs[k % SPECS]);
+        measured[k / SPECS][k % SPECS] = child_bytes((const char *const[ARGUMENTS_MAX]){
+            "image", "--scene", scenes[k / SPECS], "-a", specs[k % SPECS], "-o", "x.mat", "-t", "1"});
     for (int k = 0; k < SCENES; k++) {
         struct scene scene;
         if (scene_load(strchr(scenes[k], '.') ? path_in(scenes[k]) : scenes[k], SCENE_DIRECTORY, &scene) != STATUS_OK)
@@ -104,9 +105,69 @@ static void budgets_are_of_the_process(void **state)
     scene_free(&scene);
 }
 
+static enum status pings_make(void *simulation, int first, int count, double complex *samples)
+{
+    return simulation_pings(simulation, first, count, samples);
+}
+
+/* long.mat, of version 7.3, whose samples take 86 MB in float. */
+static void long_write(void)
+{
+    struct scene scene;
+    struct simulation *simulation;
+    text_write("long.cfg", "sonar = { fc = 150e3; bandwidth = 15e3; fs = 30e3; };\npulse = { kind = \"flat\"; };\n"
+                           "array = { tx_length = 0.08; rx_length = 0.04; receivers = 4; first_offset = 0.04; "
+                           "pitch = 0.04; };\n"
+                           "track = { speed = 1.25; pri = 0.064; pings = 3000; x_first = -120.0; };\n"
+                           "record = { first_sample = 720; samples = 900; };\n"
+                           "beam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.443; };\n"
+                           "aperture_limit = 0.1;\ntargets = { points = ( { x = 0.1; r = 30.0; } ); };\n"
+                           "image = { x = { first = -100.0; step = 0.04; count = 5000; };\n"
+                           "          r = { first = 20.0; step = 0.04; count = 400; }; };\n");
+    assert_int_equal(scene_load(path_in("long.cfg"), SCENE_DIRECTORY, &scene), STATUS_OK);
+    const struct echo_notes notes = scene_notes(&scene);
+    assert_int_equal(simulation_open(&scene, 1, &simulation), STATUS_OK);
+    const struct sample_source source = {simulation_exponent(simulation), pings_make, simulation};
+    assert_int_equal(echo_file_blocks(path_in("long.mat"), &scene.acquisition, &source, 100, &notes), STATUS_OK);
+    simulation_close(simulation);
+    scene_free(&scene);
+}
+
+/* Tiles for a memory: the process keeps to it, in several tiles, and leaves little of it unused. */
+static void tiles_keep_to_a_memory(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"bp_nearest", "bp_farrow", "bp_sinc:taps=4,engine=general", "bp_factorised",
+                                        "rma_delay"};
+    static const double limit = 120e6;
+    long_write();
+    for (size_t k = 0; k < COUNT_OF(specs); k++) {
+        int columns, rows, tiles;
+        const double bytes = child_bytes((const char *const[ARGUMENTS_MAX]){
+            "image", "-e", "long.mat", "-a", specs[k], "-o", "x.mat", "-t", "1", "--memory", "120M"});
+        char *said = support_read("said"), *at = strstr(said, "--tile ");
+        assert_non_null(at);
+        assert_int_equal(sscanf(at, "--tile %dx%d, %d in all", &columns, &rows, &tiles), 3);
+        print_message("%s: %d tiles of %dx%d, %.1f MB\n", specs[k], tiles, columns, rows,
+                      1e-6 * bytes); /* 100 to 115 */
+        assert_true(tiles > 1 && bytes <= limit && bytes >= 0.7 * limit);
+        free(said);
+    }
+    static const struct refusal refusals[] = {
+        {{"image", "-e", "long.mat", "-a", "rma_delay", "-o", "no.mat", "--memory", "18M"}, {"--memory", "18 MB"}},
+        {{"image", "-e", "long.mat", "-a", "rma_delay", "-o", "no.mat", "--memory", "18x"}, {"--memory", "'18x'"}},
+        {{"image", "-e", "long.mat", "-a", "rma_delay", "-o", "no.png", "--memory", "60M"}, {"--memory", "FILE.mat"}},
+        {{"image", "-e", "long.mat", "-a", "rma_delay", "-o", "no.mat", "--memory", "60M", "--tile", "9x9"},
+         {"--memory 60M", "--tile 9x9"}},
+        {{"image", "-s", "study/quick", "-a", "rma_delay", "-o", "no.mat", "--memory", "60M"}, {"--echoes"}},
+    };
+    assert_all_refused(refusals, COUNT_OF(refusals));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(processes_take_what_plans_say),
-                                       cmocka_unit_test(budgets_are_of_the_process)};
+                                       cmocka_unit_test(budgets_are_of_the_process),
+                                       cmocka_unit_test(tiles_keep_to_a_memory)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

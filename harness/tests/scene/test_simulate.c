@@ -106,9 +106,8 @@ static void blocks_are_the_whole(void **state)
         const struct sample_source source = {simulation_exponent(simulation), pings_make, &from};
         remove(path_of("blocks.mat"));
         for (from.fails = 5; from.fails <= 6; from.fails++) {
-            assert_int_equal(
-                echo_file_blocks(path_of("blocks.mat"), &scene.acquisition, &source, most[n / 2], &notes),
-                from.fails < 6 ? STATUS_FAILED : STATUS_OK);
+            assert_int_equal(echo_file_blocks(path_of("blocks.mat"), &scene.acquisition, &source, most[n / 2], &notes),
+                             from.fails < 6 ? STATUS_FAILED : STATUS_OK);
             assert_int_equal(support_exists("blocks.mat"), from.fails == 6);
         }
         simulation_close(simulation);

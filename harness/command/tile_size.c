@@ -1,0 +1,120 @@
+/* The tile for a memory (tile_size.h). */
+#include "command/tile_size.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "choice/process.h"
+#include "imaging/imaging.h"
+
+/* Of the memory, for plans. The rest is for what they do not count: scratch of further threads, buffers of files. */
+static const double SHARE = 15.0 / 16;
+
+static int parts_of(int whole, int part)
+{
+    return (whole + part - 1) / part;
+}
+
+/* The number of the farthest tile of the stretch of columns that is next to the middle of the track. */
+static int dearest(const struct acquisition *a, const struct tiles *tiles)
+{
+    const int deep = parts_of(tiles->grid.r_count, tiles->rows);
+    const struct vector middle = a->tx[a->pings / 2];
+    double least = INFINITY;
+    int nearest = 0;
+    for (int n = 0; n < tiles_count(tiles); n += deep) {
+        const struct pixel_window w = tiles_window(tiles, n);
+        const struct vector p = grid_point(&tiles->grid, w.row, w.column + w.columns / 2);
+        const double distance = hypot(p.x - middle.x, p.y - middle.y);
+        if (distance < least) {
+            least = distance;
+            nearest = n;
+        }
+    }
+    return nearest;
+}
+
+enum status tile_cost(const struct spec *spec, const struct scene *scene, const struct tiles *tiles,
+                      struct tile_cost *cost)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const struct pixel_window window = tiles_window(tiles, dearest(a, tiles));
+    struct problem problem = problem_make(a, 1, &tiles->grid, spec->precision);
+    struct imaging imaging;
+    bool *read = calloc((size_t)a->pings, sizeof *read);
+    problem.window = &window;
+    enum status status =
+        read ? imaging_open(spec, &problem, &imaging) : status_set(STATUS_FAILED, "out of memory for pings");
+    if (status == STATUS_OK) {
+        const struct work work = imaging.algorithm->work(imaging.plan);
+        imaging_reads(&imaging, &problem, read);
+        *cost = (struct tile_cost){.flops = work.flops};
+        for (int p = 0; p < a->pings; p++)
+            cost->pings += read[p];
+        cost->bytes = process_tile_bytes(&problem, work.bytes, cost->pings);
+        imaging_close(&imaging);
+    }
+    free(read);
+    return status;
+}
+
+/* The widest tile of tiles->rows that fits; tiles->columns is 0 where not even one of a single column does. Memory
+   grows about in proportion to the columns: the next width is where the line through two that fit reaches the limit,
+   so that no plan takes much more than it. */
+static enum status widen(const struct spec *spec, const struct scene *scene, double bytes, struct tiles *tiles,
+                         struct tile_cost *cost)
+{
+    enum { GROWTH = 8, CLOSE = 32 };
+    int fits = 0, beyond = tiles->grid.x_count + 1;
+    double slope = INFINITY, held = 0; /* bytes a column; of `fits` */
+    enum status status = STATUS_OK;
+    for (int next = 1; status == STATUS_OK && beyond - fits > 1 + fits / CLOSE && next > fits;) {
+        struct tile_cost tried;
+        tiles->columns = next;
+        status = tile_cost(spec, scene, tiles, &tried);
+        if (status == STATUS_OK && tried.bytes <= SHARE * bytes) {
+            slope = fits > 0 && tried.bytes > held ? (tried.bytes - held) / (next - fits) : 0;
+            fits = next;
+            held = tried.bytes;
+            *cost = tried;
+        } else {
+            beyond = next;
+        }
+        const double reach = slope > 0 ? fits + (SHARE * bytes - held) / slope : INFINITY;
+        next = (int)fmin(fmin(reach, (double)GROWTH * fits),
+                         beyond > tiles->grid.x_count ? beyond - 1 : (fits + beyond) / 2);
+    }
+    tiles->columns = fits;
+    return status;
+}
+
+enum status tile_choose(const struct spec *spec, const struct scene *scene, double bytes, struct tiles *tiles,
+                        struct tile_cost *cost)
+{
+    enum { PARTS_MOST = 64, TRACKS = 2 };
+    const struct acquisition *a = &scene->acquisition;
+    struct tiles tried = *tiles;
+    double reads = INFINITY;
+    enum status status = STATUS_OK;
+    for (int parts = 1; status == STATUS_OK && parts <= PARTS_MOST && parts <= tiles->grid.r_count
+                        && reads > (double)TRACKS * a->pings;
+         parts *= 2) {
+        struct tile_cost one;
+        tried.rows = parts_of(tiles->grid.r_count, parts);
+        status = widen(spec, scene, bytes, &tried, &one);
+        const double all =
+            tried.columns > 0 ? (double)one.pings * parts_of(tiles->grid.x_count, tried.columns) : INFINITY;
+        if (status == STATUS_OK && all < reads) {
+            reads = all;
+            tiles->rows = tried.rows;
+            tiles->columns = parts_of(tiles->grid.x_count, parts_of(tiles->grid.x_count, tried.columns));
+            *cost = one;
+        }
+    }
+    if (status == STATUS_OK && reads == INFINITY)
+        status = status_set(STATUS_UNSUPPORTED,
+                            "image: --memory: no tile fits into %.4g MB, not even one of 1x%d pixels (cure: more "
+                            "memory, fewer receivers or samples)",
+                            bytes / 1e6, tried.rows);
+    return status;
+}
