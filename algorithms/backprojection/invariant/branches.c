@@ -84,7 +84,8 @@ INLINE void sum_branches(int branches, const struct chunk *shared)
     const struct chunk own_chunk = *shared, *chunk = &own_chunk;
     const struct bp_row_scratch own_scratch = *chunk->scratch, *scratch = &own_scratch;
     const int columns = chunk->raster->residue_columns, vectors = (columns + LANES - 1) / LANES;
-    const int parts = (vectors + BLOCK_VECTORS - 1) / BLOCK_VECTORS, width = (vectors + parts - 1) / parts * LANES;
+    const int most = BLOCK_VECTORS * BP_TOGETHER_BRANCHES / scratch->groups[chunk->begin].residues;
+    const int parts = (vectors + most - 1) / most, width = (vectors + parts - 1) / parts * LANES;
     for (int j = 0; j < columns; j += width)
         if (j < chunk->raster->shown.end && j + width > chunk->raster->shown.begin)
             sum_block(branches, chunk, scratch, j, columns < j + width ? columns : j + width);
