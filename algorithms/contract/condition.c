@@ -228,16 +228,10 @@ static double off_axis(const struct acquisition *a, int p, struct vector place, 
     return a->echo_squint != 0 ? u * cos(a->echo_squint) + sqrt(across2) * sin(a->echo_squint) : u;
 }
 
-/* condition_sees, of a beam sine that is found once. */
-static bool sees(const struct acquisition *a, double sine, int ping, struct vector place)
+bool condition_sees(const struct acquisition *a, double sine, int ping, struct vector place)
 {
     double range, off = fabs(off_axis(a, ping, place, &range));
     return off <= sine * range;
-}
-
-bool condition_sees(const struct acquisition *a, int ping, struct vector place)
-{
-    return sees(a, condition_beam_sine(a), ping, place);
 }
 
 /* The first and the last ping that see a place, and the one with the place nearest to its axis; -1: none. */
@@ -269,7 +263,7 @@ static struct vector place_at_edge(const struct acquisition *a, double sine, int
     double inside = 0, outside = condition_along(axis, a->tx[next], a->tx[ping]);
     for (int k = 0; k < 50; k++) {
         const double middle = (inside + outside) / 2;
-        *(sees(a, sine, ping, moved(place, axis, middle)) ? &inside : &outside) = middle;
+        *(condition_sees(a, sine, ping, moved(place, axis, middle)) ? &inside : &outside) = middle;
     }
     return moved(place, axis, inside);
 }
@@ -333,7 +327,7 @@ static void extent_search(const struct acquisition *a, double sine, const struct
     for (int p = 0; p < a->pings; p++)
         for (int n = 0; n < 3; n++) {
             const struct vector place = row_on_axis(a, p, g, n / 2.0 * (g->r_count - 1));
-            if (sees(a, sine, p, place))
+            if (condition_sees(a, sine, p, place))
                 extent_add_pings(a, sine, place, (const int[3]){-1, -1, p}, extent);
         }
 }

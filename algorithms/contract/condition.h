@@ -85,8 +85,8 @@ double condition_offset(const struct acquisition *acquisition, int n);
 double condition_beam_sine(const struct acquisition *acquisition);
 /* The same whether the amplitude tapers or not: the stated truncation, or the half-power beam. */
 double condition_cut_sine(const struct acquisition *acquisition);
-/* Does a ping see a place within condition_beam_sine of its beam's axis? */
-bool condition_sees(const struct acquisition *acquisition, int ping, struct vector place);
+/* Does a ping see a place within this sine (condition_beam_sine, which takes a search) of its beam's axis? */
+bool condition_sees(const struct acquisition *acquisition, double sine, int ping, struct vector place);
 /* Do all echoes come from within a given beam, without noise? */
 bool condition_beam_known(const struct acquisition *acquisition);
 /* |sin theta_t| up to which anything is seen at all: condition_beam_sine, but three nulls of a beam that tapers. */

@@ -86,12 +86,13 @@ static void steps_add(double step, int count, double least, double greatest, str
 static void place_survey(const struct acquisition *a, const struct grid *g, struct vector place, struct counts *counts,
                          struct survey *survey)
 {
-    const bool beam_known = isfinite(condition_beam_sine(a));
+    const double sine = condition_beam_sine(a);
+    const bool beam_known = isfinite(sine);
     struct spread spread = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
     double seen = 0, cut = 0;
     bool met = false;
     for (int p = 0; p < a->pings; p++) {
-        const bool sees = condition_sees(a, p, place);
+        const bool sees = condition_sees(a, sine, p, place);
         for (int n = 0; n < 3 && (n == 0 || a->receivers > 1); n++) {
             const struct vector rx =
                 a->rx[(size_t)p * (size_t)a->receivers + (size_t)(n * (double)(a->receivers - 1) / 2)];

@@ -219,13 +219,14 @@ void check_sensitivities(const struct scene *scene, struct sensitivity list[SENS
     };
     const struct acquisition *a = &scene->acquisition;
     const struct vector middle = middle_of(scene);
+    const double sine = condition_beam_sine(a);
     for (int q = 0; q < SENSITIVITIES; q++) {
         const double none[SENSITIVITIES] = {0};
         double off[SENSITIVITIES] = {0}, least = INFINITY, greatest = -INFINITY;
         off[q] = changes[q].size;
         for (int n = 0; n < 2 * a->pings; n++) {
             int m = n % 2 ? a->receivers - 1 : 0;
-            if (!condition_sees(a, n / 2, middle))
+            if (!condition_sees(a, sine, n / 2, middle))
                 continue;
             double moved = phase_of(scene, n / 2, m, middle, off) - phase_of(scene, n / 2, m, middle, none);
             least = fmin(least, moved);

@@ -138,7 +138,7 @@ static void line_search(const struct view *view, const struct seed *seed, const 
             *(below == rises ? &low : &high) = middle;
         }
         const struct vector place = line_place(g, along_x, line, low);
-        if (crosses && condition_sees(a, (int)(seed->record / (size_t)a->receivers), place))
+        if (crosses && condition_sees(a, condition_beam_sine(a), (int)(seed->record / (size_t)a->receivers), place))
             points[(*count)++] = place;
     }
 }

@@ -35,10 +35,10 @@ struct motion {
 static void motion_add(const struct scene *scene, struct vector pixel, struct motion *motion)
 {
     const struct acquisition *told = &scene->acquisition, *flown = scene->flown;
-    const double c = told->sound_speed;
+    const double c = told->sound_speed, sine = condition_beam_sine(told);
     const int step = 1 + told->pings / MOTION_PINGS;
     for (int p = 0; p < told->pings; p += step) {
-        if (!condition_sees(told, p, pixel))
+        if (!condition_sees(told, sine, p, pixel))
             continue;
         for (int n = 0; n < 3; n++) {
             const size_t k = (size_t)p * (size_t)told->receivers + (size_t)(n * (told->receivers - 1) / 2);
