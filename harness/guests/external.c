@@ -382,6 +382,8 @@ static enum status external_make(const char *name, struct algorithm *algorithm)
     else if (!fault && external->words.we_wordc == 0)
         fault = "the command is missing";
     if (fault) {
+        if (parsed == 0)
+            wordfree(&external->words);
         free(external);
         return status_set(STATUS_INVALID, "%s: %s; accepted: external:COMMAND, with quotes as in a shell", name, fault);
     }

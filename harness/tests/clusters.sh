@@ -6,7 +6,18 @@
 set -eu
 program=$(readlink -f "$1") root=$2 mpirun=$3 skipped=0
 folder=$(mktemp -d)
-trap 'for pid in "$folder"/*.pid; do [ ! -f "$pid" ] || kill "$(cat "$pid")" || :; done; rm -rf "$folder"' EXIT
+# What Slurm began ends, and writes its last files, before they are removed.
+finish()
+{
+    for pid in "$folder"/*.pid; do
+        [ ! -f "$pid" ] || kill "$(cat "$pid")" || :
+    done
+    for wait in 1 2 3 4 5 6 7 8 9 10; do
+        ! rm -rf "$folder" 2>/dev/null || break
+        sleep 1
+    done
+}
+trap finish EXIT
 cd "$folder"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 export program mpirun

@@ -223,7 +223,7 @@ void factorised_count(struct factorised *plan)
             all.traces += some.traces;
         }
     }
-    for (int n = count - 1; plan->used && n >= 0; n--) /* parents first */
+    for (int n = count - 1; plan->needed && plan->used && n >= 0; n--) /* parents first */
         if (tree->subapertures[n].parent >= 0)
             plan->used[n] |= plan->used[tree->subapertures[n].parent];
     plan->flops += all.records * (4.0 * (plan->bp.table.branches - 1) + 8) + flops_of(tree, &all);
