@@ -97,6 +97,7 @@ do for [k = 1:count] {
             names = target_count[k] == 0 ? "" : ", targets[k] using 1:2 with points pointtype 6 pointsize 2.2 linewidth 1.2 " \
                 ."linecolor '#ffffff' notitle, targets[k] using 1:2:3 with labels left offset 1.2,0.6 font ',11' " \
                 ."textcolor '#ffffff' notitle"
+            set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb "#b8b8b8" linewidth 0  # pixels without a value
             eval "plot name binary matrix".places." with image notitle".names
         } else {
             along_x = shapes[k] eq "rows"
@@ -117,6 +118,7 @@ do for [k = 1:count] {
             unset grid
         }
         unset label 1
+        unset object 1
     }
 }
 unset multiplot

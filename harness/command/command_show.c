@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "command/task.h"
-#include "echoes/matfile.h"
+#include "echoes/mat_tiles.h"
 #include "show/plot.h"
 
 /* FILE.png for FILE.mat. */
@@ -30,8 +30,9 @@ static enum status file_open(const char *path, struct image_file *file)
 enum status command_show(const struct task *task)
 {
     struct image_file file;
-    char output[4200], title[1200];
+    char output[4200], title[1200], part[60] = "";
     double range_db;
+    int done, count;
     if (task->output)
         snprintf(output, sizeof output, "%s", task->output);
     else
@@ -44,8 +45,12 @@ enum status command_show(const struct task *task)
     if (status != STATUS_OK)
         return status;
     const struct image_origin *o = &file.origin;
-    snprintf(title, sizeof title, "%s%s%s%s%s%s", *o->scene ? o->scene : task->names[0], *o->algorithm ? ": " : "",
-             o->algorithm, *o->options ? ":" : "", o->options, origin_choice(o).text);
+    if (tiles_claimed(task->names[0], &done, &count)) {
+        snprintf(part, sizeof part, ", unfinished: %d of %d tiles", done, count);
+        tiles_blank(task->names[0], &file.image.patches[0], file.image.pixels[0]);
+    }
+    snprintf(title, sizeof title, "%s%s%s%s%s%s%s", *o->scene ? o->scene : task->names[0], *o->algorithm ? ": " : "",
+             o->algorithm, *o->options ? ":" : "", o->options, origin_choice(o).text, part);
     status = picture_draw(output, task->output, &file.image, title, range_db, NULL);
     if (status == STATUS_OK) {
         printf("%s: %s\n", output, title);

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -224,25 +225,70 @@ static enum status tiles_begin(struct tiles *tiles, const char *settings, const 
                : tiles_fail(tiles, "its journal cannot be written");
 }
 
-bool tiles_claimed(const char *path, int *done, int *count)
+/* What journals claim. */
+struct claims {
+    int rows, columns, count;
+    bool *done; /* [count] */
+};
+
+static void claims_mark(void *with, const char *text)
+{
+    const struct claims *claims = with;
+    for (const char *end; (end = strchr(text, '\n')); text = end + 1) {
+        unsigned long sum;
+        const int n = journal_claim(text, end, &sum);
+        if (n >= 0 && n < claims->count)
+            claims->done[n] = true;
+    }
+}
+
+/* False where there is no journal; nothing to free then. */
+static bool claims_read(const char *path, struct claims *claims)
 {
     char name[PATH_MAX];
-    int rows, columns;
     off_t end;
+    *claims = (struct claims){.done = NULL};
     snprintf(name, sizeof name, "%s" TILES_JOURNAL, path);
     const int journal = open(name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     char *text = journal >= 0 ? journal_read(journal, &end) : NULL;
-    const bool ours = text && strncmp(text, head, strlen(head)) == 0
-                      && sscanf(text + strlen(head), line_of_tiles, &columns, &rows, count) == 3;
-    *done = 0;
-    if (ours) {
-        journal_claims(done, text);
-        journals_each(path, journal_claims, done);
+    if (text && strncmp(text, head, strlen(head)) == 0
+        && sscanf(text + strlen(head), line_of_tiles, &claims->columns, &claims->rows, &claims->count) == 3
+        && claims->columns > 0 && claims->rows > 0 && claims->count > 0)
+        claims->done = calloc((size_t)claims->count, sizeof *claims->done);
+    if (claims->done) {
+        claims_mark(claims, text);
+        journals_each(path, claims_mark, claims);
     }
     free(text);
     if (journal >= 0)
         close(journal);
-    return ours;
+    return claims->done;
+}
+
+bool tiles_claimed(const char *path, int *done, int *count)
+{
+    struct claims claims;
+    const bool read = claims_read(path, &claims);
+    *done = 0;
+    *count = claims.count;
+    for (int n = 0; read && n < claims.count; n++)
+        *done += claims.done[n];
+    free(claims.done);
+    return read;
+}
+
+void tiles_blank(const char *path, const struct grid *grid, double complex *pixels)
+{
+    struct claims claims;
+    const bool read = claims_read(path, &claims);
+    const struct tiles tiles = {.grid = *grid, .rows = claims.rows, .columns = claims.columns};
+    for (int n = 0; read && tiles_count(&tiles) == claims.count && n < claims.count; n++) {
+        const struct pixel_window w = tiles_window(&tiles, n);
+        for (int i = w.row; i < w.row + w.rows && !claims.done[n]; i++)
+            for (int j = w.column; j < w.column + w.columns; j++)
+                pixels[(size_t)i * (size_t)grid->x_count + (size_t)j] = NAN;
+    }
+    free(claims.done);
 }
 
 /* `text`: of the journal. */

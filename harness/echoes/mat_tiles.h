@@ -39,7 +39,10 @@ enum status tiles_write(struct tiles *tiles, int number, const void *pixels);
 enum status tiles_seal(struct tiles *tiles, bool *sealed);
 void tiles_close(struct tiles *tiles);
 
-/* What the journals beside an image file claims, unverified; false where there is none. */
+/* What the journals beside an image file claim, unverified; false where there is none. */
 bool tiles_claimed(const char *path, int *done, int *count);
+/* Set those pixels [r_count][x_count] to NAN that lie in tiles which the journals do not claim; none where there is no
+   journal. */
+void tiles_blank(const char *path, const struct grid *grid, double complex *pixels);
 
 #endif

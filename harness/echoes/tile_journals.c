@@ -99,14 +99,6 @@ int journal_claim(const char *line, const char *end, unsigned long *sum)
     return sscanf(line, "done %d %8lx%n", &number, sum, &length) == 2 && line + length == end ? number : -1;
 }
 
-void journal_claims(void *count, const char *text)
-{
-    for (const char *end; (end = strchr(text, '\n')); text = end + 1) {
-        unsigned long sum;
-        *(int *)count += journal_claim(text, end, &sum) >= 0;
-    }
-}
-
 /* The names of all writers' journals, in their folder. */
 static void names_each(const char *path, void (*each)(void *with, int folder, const char *name), void *with)
 {

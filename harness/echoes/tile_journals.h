@@ -26,8 +26,6 @@ enum status journal_own(const char *path, int writer, int *journal);
 char *journal_read(int journal, off_t *end);
 /* The tile that a line, which ends at `end`, claims, and its checksum; -1: it is no such line. */
 int journal_claim(const char *line, const char *end, unsigned long *sum);
-/* Add the number of a text's claims to an int. */
-void journal_claims(void *count, const char *text);
 /* Call `each` with the text of each writer's journal. */
 void journals_each(const char *path, void (*each)(void *with, const char *text), void *with);
 /* Remove those of all writers. */

@@ -1,6 +1,7 @@
 /* `image --tile`: the bits of the whole image, also after kill -9 at moments that differ each time; what is refused,
    and what a damaged or torn file costs. */
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -219,6 +220,7 @@ static void damage_is_mended(void **state)
     const int file = open(path_of("x.mat" TILES_JOURNAL), O_WRONLY | O_APPEND);
     assert_int_equal(write(file, wrong, strlen(wrong)), (ssize_t)strlen(wrong));
     close(file);
+    assert_true(tiles_claimed(path_of("x.mat"), &kept, &count) && kept == done); /* tile 0 counts once */
     struct outcome outcome = program_run((const char *const[]){IMAGE("reference", "x.mat"), "--tile", "8x2", NULL});
     assert_int_equal(outcome.status, 0);
     assert_int_equal(sscanf(strstr(outcome.out, ".mat: ") + 6, "%d of", &kept), 1);
@@ -226,6 +228,33 @@ static void damage_is_mended(void **state)
     outcome_free(&outcome);
     program_good((const char *const[]){IMAGE("reference", "whole.mat"), NULL});
     assert_same_image("whole.mat", "x.mat");
+}
+
+/* Of a part of the shards: what is drawn has no value in the other tiles, and its title counts them. */
+static void missing_tiles_are_shown(void **state)
+{
+    (void)state;
+    struct grid g;
+    double complex *pixels, *drawn;
+    unlink(path_of("s.mat"));
+    program_good((const char *const[ARGUMENTS_MAX]){IMAGE("reference", "s.mat"), "--tile", "17x9", "--shard", "2/3"});
+    assert_int_equal(image_file_read(path_of("s.mat"), &g, &pixels), STATUS_OK);
+    assert_int_equal(image_file_read(path_of("s.mat"), &g, &drawn), STATUS_OK);
+    tiles_blank(path_of("s.mat"), &g, drawn);
+    for (int n = 0; n < g.x_count * g.r_count; n++) { /* tiles of two rows of them, the farthest first */
+        const int number = 2 * (n % g.x_count / 17) + (n / g.x_count < 9);
+        assert_true(number % 3 == 1 ? drawn[n] == pixels[n] && pixels[n] != 0 : isnan(creal(drawn[n])));
+    }
+    free(drawn);
+    free(pixels);
+    char *told = program_output((const char *const[]){"show", "s.mat", "-o", "s.png", NULL});
+    assert_non_null(strstr(told, "reference, unfinished: 3 of 8 tiles\n"));
+    free(told);
+    for (int n = 0; n <= 2; n += 2)
+        unlink(path_of(n ? "s.mat" TILES_JOURNAL ".2" : "s.mat" TILES_JOURNAL));
+    told = program_output((const char *const[]){"show", "s.mat", "-o", "s.png", NULL});
+    assert_null(strstr(told, "tiles"));
+    free(told);
 }
 
 /* No room for the pixels: said before the work, and nothing is left but an empty journal. */
@@ -245,6 +274,7 @@ int main(void)
                                        cmocka_unit_test(one_finishes_shards),
                                        cmocka_unit_test(others_are_refused),
                                        cmocka_unit_test(damage_is_mended),
+                                       cmocka_unit_test(missing_tiles_are_shown),
                                        cmocka_unit_test(full_disks_are_told)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
