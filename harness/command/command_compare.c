@@ -31,7 +31,7 @@ static enum status compare_images(const struct task *task)
     if (status == STATUS_OK && (task->name_count > 2 || task->spec_count > 0 || task->markdown || task->json))
         status = status_set(STATUS_INVALID, "compare: of images two files and -o FILE.png are accepted");
     for (int k = 0; k < 2 && status == STATUS_OK; k++)
-        status = image_file_open(names[k], &files[k]);
+        status = image_file_open_whole(names[k], &files[k]);
     const struct image *image = &files[0].image, *reference = &files[1].image;
     if (status == STATUS_OK)
         status = metrics_cover(image, reference->patch_count, reference->patches);

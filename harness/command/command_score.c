@@ -68,7 +68,7 @@ static enum status image_find(const struct task *task, const struct scene *scene
     const char *path = task->names[0];
     struct grid grid = scene->patches[0];
     if (!has_extension(path, ".npy"))
-        return image_file_open(path, file);
+        return image_file_open_whole(path, file);
     if (!task->grid && scene->patch_count > 1)
         return status_set(STATUS_INVALID, "score: %s images %d patches; --grid must say which one %s is", scene->name,
                           scene->patch_count, path);

@@ -269,6 +269,18 @@ enum status image_file_open(const char *path, struct image_file *file)
     return status;
 }
 
+enum status image_file_open_whole(const char *path, struct image_file *file)
+{
+    const enum status status = image_file_open(path, file);
+    if (status != STATUS_OK || strncmp(file->origin.status, "unfinished", strlen("unfinished")) != 0)
+        return status;
+    image_file_close(file);
+    return status_set(STATUS_INVALID,
+                      "%s: the image is unfinished, its pixels of missing tiles are zero; the command that began it "
+                      "finishes it (`info` counts its tiles)",
+                      path);
+}
+
 void image_file_close(struct image_file *file)
 {
     image_free(&file->image);

@@ -80,6 +80,8 @@ struct image_file {
     struct image_origin origin;
 };
 enum status image_file_open(const char *path, struct image_file *file);
+/* The same of an image that is measured: one whose tiles are not all done is refused. */
+enum status image_file_open_whole(const char *path, struct image_file *file);
 void image_file_close(struct image_file *file);
 
 /* Is it an echo file, by its variable `format` or `t0`? An image file, by its axis `x`? Errors: as variables_read. */

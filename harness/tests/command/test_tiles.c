@@ -250,6 +250,11 @@ static void missing_tiles_are_shown(void **state)
     char *told = program_output((const char *const[]){"show", "s.mat", "-o", "s.png", NULL});
     assert_non_null(strstr(told, "reference, unfinished: 3 of 8 tiles\n"));
     free(told);
+    static const struct refusal refusals[] = {
+        {{"compare", "s.mat", "s.mat"}, {"s.mat: the image is unfinished"}},
+        {{"score", "s.mat", "study/quick"}, {"s.mat: the image is unfinished"}},
+    };
+    assert_all_refused(refusals, COUNT_OF(refusals));
     for (int n = 0; n <= 2; n += 2)
         unlink(path_of(n ? "s.mat" TILES_JOURNAL ".2" : "s.mat" TILES_JOURNAL));
     told = program_output((const char *const[]){"show", "s.mat", "-o", "s.png", NULL});
