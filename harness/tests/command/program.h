@@ -9,7 +9,7 @@
 
 #define COUNT_OF(array) (sizeof array / sizeof *array)
 
-enum { ARGUMENTS_MAX = 14, SAYS_MAX = 4 };
+enum { ARGUMENTS_MAX = 16, SAYS_MAX = 4 };
 
 /* Before the tests: the folder with the inputs that they share, and the program's path, from the environment variable
    SASBENCH_PROGRAM. folder_remove ends it. */

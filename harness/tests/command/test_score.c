@@ -62,7 +62,9 @@ static void scores_are_those_of_run(void **state)
     npy_write("columns.npy", &file.image, true);
     image_file_close(&file);
     program_good((const char *const[ARGUMENTS_MAX]){"run", "study/quick", "-a", "bp_linear", "-o", "ran"});
-    static const char *const files[] = {"own.mat", "rows.npy", "columns.npy"};
+    program_good((const char *const[ARGUMENTS_MAX]){"image", "--scene", "study/quick", "-a", "bp_linear", "-o",
+                                                    "73.mat", "--tile", "17x5"});
+    static const char *const files[] = {"own.mat", "rows.npy", "columns.npy", "73.mat"};
     for (size_t k = 0; k < COUNT_OF(files); k++) {
         char results[40], table[80];
         snprintf(results, sizeof results, "scored_%zu", k);
