@@ -70,12 +70,15 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
         return writer->status;
     }
     const bool fits_v5 = writer_fits_v5(largest_variable_bytes);
+    if (!fits_v5)
+        place_tidy(&writer->place);
     const bool named = !fits_v5 && place_name(&writer->place, &writer->made); /* HDF5 opens no file without a name */
     /* libmatio opens by name what is there already. */
     snprintf(writer->temporary, sizeof writer->temporary, "/proc/self/fd/%d%s%s",
              named ? writer->place.folder : writer->made.descriptor, named ? "/" : "", named ? writer->made.name : "");
     matio_silence();
-    H5dont_atexit(); /* its exit handler crashes after a full disk */
+    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0); /* the file is locked already, which NFS counts as another's */
+    H5dont_atexit();                             /* its exit handler crashes after a full disk */
     errno = 0;
     writer->mat =
         fits_v5 != named ? Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73) : NULL;

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* group_member, O_PATH, O_TMPFILE */
 #include "files/folder.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -133,6 +134,9 @@ bool place_sync(int descriptor)
     return fsync(descriptor) == 0 || (errno != EIO && errno != ENOSPC && errno != EDQUOT);
 }
 
+static const char made_prefix[] = ".sasbench-";
+enum { MADE_DIGITS = 12 };
+
 /* An unpredictable name that is not there yet; `try_name` makes it, or -1. */
 static int name_make(int folder, struct made *made, int (*try_name)(int folder, const struct made *made))
 {
@@ -142,7 +146,7 @@ static int name_make(int folder, struct made *made, int (*try_name)(int folder, 
         uint64_t random;
         if (getrandom(&random, sizeof random, 0) != sizeof random)
             return -1;
-        snprintf(made->name, sizeof made->name, ".sasbench-%012" PRIx64, random >> 16);
+        snprintf(made->name, sizeof made->name, "%s%0*" PRIx64, made_prefix, MADE_DIGITS, random >> 16);
         result = try_name(folder, made);
     }
     return result;
@@ -160,11 +164,48 @@ static int name_open(int folder, const struct made *made)
     return openat(folder, made->name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
+/* Held while the program lives; of its own open file, whatever others lock by other descriptors. False: another holds
+   it, or the file system has no locks. */
+static bool made_lock(int descriptor)
+{
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    return fcntl(descriptor, F_OFD_SETLK, &lock) == 0;
+}
+
+static void leftover_remove(int folder, const char *name)
+{
+    enum { OLD_S = 3600 }; /* some file systems keep locks from other machines: who lives writes */
+    struct stat info;
+    const int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file >= 0 && fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid()
+        && time(NULL) - info.st_mtime > OLD_S && made_lock(file))
+        unlinkat(folder, name, 0);
+    if (file >= 0)
+        close(file);
+}
+
+void place_tidy(const struct place *place)
+{
+    const int own = openat(place->folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *list = own >= 0 ? fdopendir(own) : NULL;
+    for (struct dirent *entry; list && (entry = readdir(list));)
+        if (strncmp(entry->d_name, made_prefix, strlen(made_prefix)) == 0
+            && strlen(entry->d_name) == strlen(made_prefix) + MADE_DIGITS
+            && strspn(entry->d_name + strlen(made_prefix), "0123456789abcdef") == MADE_DIGITS)
+            leftover_remove(place->folder, entry->d_name);
+    if (list)
+        closedir(list);
+    else if (own >= 0)
+        close(own);
+}
+
 bool place_make(const struct place *place, struct made *made)
 {
     *made = (struct made){.descriptor = openat(place->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666)};
     if (made->descriptor < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL))
         made->descriptor = name_make(place->folder, made, name_open);
+    if (made->descriptor >= 0)
+        made_lock(made->descriptor);
     return made->descriptor >= 0;
 }
 

@@ -39,6 +39,8 @@ struct made {
 };
 /* Open an empty file for writing, in the place's folder. False: errno has the reason. */
 bool place_make(const struct place *place, struct made *made);
+/* Remove what killed programs left there under temporary names: what nobody locks, nor has written for an hour. */
+void place_tidy(const struct place *place);
 /* Give it a temporary name, for a library that needs one. False: errno has the reason. */
 bool place_name(const struct place *place, struct made *made);
 /* Give it its name, and close it. True: the name outlasts a power cut. */

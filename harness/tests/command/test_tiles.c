@@ -1,5 +1,6 @@
 /* `image --tile`: the bits of the whole image, also after kill -9 at moments that differ each time; what is refused,
    and what a damaged or torn file costs. */
+#define _GNU_SOURCE /* F_OFD_SETLK */
 #include <fcntl.h>
 #include <math.h>
 #include <signal.h>
@@ -7,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -321,6 +323,41 @@ static void missing_tiles_are_shown(void **state)
     free(told);
 }
 
+/* A program killed while it wrote a file of version 7.3 leaves it under a temporary name: the next one removes it, once
+   nobody locks it nor writes to it. */
+static void leftovers_are_removed(void **state)
+{
+    (void)state;
+    enum { GONE, LOCKED, YOUNG, LINK, OTHER, FILES };
+    static const char *const names[FILES] = {".sasbench-0123456789ab", ".sasbench-0123456789ac",
+                                             ".sasbench-0123456789ad", ".sasbench-0123456789ae",
+                                             ".sasbench-0123456789a"};
+    const struct timespec past[2] = {{.tv_sec = 1000000000}, {.tv_sec = 1000000000}};
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    for (int k = 0; k < FILES; k++) {
+        if (k == LINK)
+            assert_int_equal(symlink(names[OTHER], path_of(names[k])), 0);
+        else
+            text_write(names[k], "half");
+        if (k != YOUNG)
+            assert_int_equal(utimensat(AT_FDCWD, path_of(names[k]), past, AT_SYMLINK_NOFOLLOW), 0);
+    }
+    const int owner = open(path_of(names[LOCKED]), O_RDWR);
+    assert_int_equal(fcntl(owner, F_OFD_SETLK, &lock), 0);
+    for (int n = 0; n < 2; n++) {
+        unlink(path_of("l.mat"));
+        program_good((const char *const[ARGUMENTS_MAX]){IMAGE("bp_nearest", "l.mat"), "--tile", "17x9"});
+        for (int k = 0; k < FILES; k++) {
+            struct stat info;
+            const bool there = lstat(path_of(names[k]), &info) == 0;
+            if (there == (k == GONE || (k == LOCKED && n == 1)))
+                fail_msg("%s is %s", names[k], there ? "there" : "gone");
+        }
+        if (n == 0)
+            close(owner);
+    }
+}
+
 /* No room for the pixels: said before the work, and nothing is left but an empty journal. */
 static void full_disks_are_told(void **state)
 {
@@ -340,6 +377,7 @@ int main(void)
                                        cmocka_unit_test(others_are_refused),
                                        cmocka_unit_test(damage_is_mended),
                                        cmocka_unit_test(missing_tiles_are_shown),
+                                       cmocka_unit_test(leftovers_are_removed),
                                        cmocka_unit_test(full_disks_are_told)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
