@@ -104,7 +104,8 @@ struct writer {
     struct made made;
     char temporary[64]; /* the path of what is made */
     struct _mat_t *mat;
-    int count; /* variables written */
+    int count;  /* variables written */
+    off_t room; /* bytes taken on the disk, in version 7.3 */
     enum status status;
     /* Adds to the file that libmatio has closed, before it gets its place; false: the status is set, or errno has the
        reason. NULL: none. */

@@ -1,4 +1,5 @@
 /* Writing MATLAB files through libmatio: version 5, or 7.3 where that cannot hold a variable. */
+#define _GNU_SOURCE /* fallocate */
 #include "echoes/matfile.h"
 #include "echoes/matvar.h"
 
@@ -58,6 +59,16 @@ bool writer_fits_v5(size_t largest_variable_bytes)
     return largest_variable_bytes < ((size_t)1 << 31) - 4096;
 }
 
+/* HDF5 crashes on a full disk, also where it only closes a file: room for a variable, and for what HDF5 adds, is taken
+   beforehand. A file system that cannot take it is as good as one with room. */
+static bool room_take(struct writer *writer, size_t bytes)
+{
+    enum { HEADS_MOST = 1 << 14 };
+    writer->room += (off_t)(bytes + HEADS_MOST);
+    return fallocate(writer->made.descriptor, FALLOC_FL_KEEP_SIZE, 0, writer->room) == 0
+           || (errno != ENOSPC && errno != EDQUOT);
+}
+
 enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes)
 {
     *writer = (struct writer){.path = path};
@@ -80,8 +91,8 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0); /* the file is locked already, which NFS counts as another's */
     H5dont_atexit();                             /* its exit handler crashes after a full disk */
     errno = 0;
-    writer->mat =
-        fits_v5 != named ? Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73) : NULL;
+    if (fits_v5 || (named && room_take(writer, 0)))
+        writer->mat = Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73);
     if (!writer->mat) {
         write_failed(writer);
         writer_end(writer);
@@ -97,10 +108,14 @@ static void write_variable(struct writer *writer, const char *name, enum matio_c
     }
     size_t dims[3] = {shape[0], shape[1], shape[2]};
     errno = 0;
+    const bool is_v5 = Mat_GetVersion(writer->mat) == MAT_FT_MAT5;
+    if (!is_v5 && !room_take(writer, dims[0] * dims[1] * dims[2] * sizeof(double complex))) {
+        write_failed(writer);
+        return;
+    }
     matvar_t *matvar = Mat_VarCreate(name, class, type, dims[2] == 1 ? 2 : 3, dims, data, MAT_F_DONT_COPY_DATA | flags);
     /* Version 7.3 stays unpacked: HDF5 would pack real and imaginary parts in turns, which takes minutes. */
-    bool is_packed = Mat_GetVersion(writer->mat) == MAT_FT_MAT5;
-    if (!matvar || Mat_VarWrite(writer->mat, matvar, is_packed ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE) != 0) {
+    if (!matvar || Mat_VarWrite(writer->mat, matvar, is_v5 ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE) != 0) {
         write_failed(writer);
     }
     Mat_VarFree(matvar);

@@ -366,6 +366,22 @@ static void full_disks_are_told(void **state)
     assert_false(support_exists("full.mat"));
 }
 
+/* A disk of so many KB: either the image is there, or the program says why not and leaves nothing. */
+static void small_disks_are_told(void **state)
+{
+    (void)state;
+    if (system("unshare -rm true 2> /dev/null") != 0)
+        skip();
+    assert_shell(
+        "mkdir disk && unshare -rm sh -c 'mount -t tmpfs -o size=4k tmpfs disk; all=0; "
+        "for k in 4 8 12 16 32 64 96 128 160 256 512; do mount -o remount,size=${k}k disk; "
+        "\"$SASBENCH_PROGRAM\" image -s study/quick -a bp_nearest -o disk/x.mat --tile 17x9 > told 2>&1; got=$?; "
+        "case $got in 0) test -e disk/x.mat && all=1 ;; "
+        "2) grep -q \"No space left\" told && test ! -e disk/x.mat ;; *) false ;; esac "
+        "|| { echo $k: $got; cat told; exit 1; }; rm -rf disk/* disk/.sas*; done; test $all = 1'",
+        0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(bits_of_the_whole),
@@ -378,6 +394,7 @@ int main(void)
                                        cmocka_unit_test(damage_is_mended),
                                        cmocka_unit_test(missing_tiles_are_shown),
                                        cmocka_unit_test(leftovers_are_removed),
-                                       cmocka_unit_test(full_disks_are_told)};
+                                       cmocka_unit_test(full_disks_are_told),
+                                       cmocka_unit_test(small_disks_are_told)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
