@@ -184,7 +184,7 @@ static int evenly(int n, int most, int count)
 /* The share of a patch's energy in the errors. */
 static double patch_ends(const struct acquisition *a, const struct grid *g, double reach)
 {
-    enum { COLUMNS = 3, PINGS_MOST = 128, RECEIVERS_MOST = 4 };
+    enum { COLUMNS = 3, PINGS_MOST = 32, RECEIVERS_MOST = 4 };
     const int pings = a->pings < PINGS_MOST ? a->pings : PINGS_MOST;
     const int receivers = a->receivers < RECEIVERS_MOST ? a->receivers : RECEIVERS_MOST;
     double missed = 0, seen = 0;
