@@ -36,6 +36,16 @@
    - No function prints, exits, throws past its caller, or keeps state outside its plan.
    - Errors: return host->fail(SAS_UNSUPPORTED, "the track bends by %g m", bend) with the reason. Never a silent zero.
 
+   ECHOES TO ECHOES. A shared object may define `sas_filter_plugin` instead: a filter, motion compensation, autofocus.
+   It stands ahead of an algorithm, `--algorithm "./notch.so:low=1e3 | bp_farrow:degree=5"`, and its time counts.
+   - plan: *out begins as a copy of the problem's acquisition. It changes what its echoes have otherwise: numbers, and
+     arrays, which it points to its own, valid until destroy. Sizes may change, and pulse_length = 0 tells that it
+     compresses. What follows images *out on the same pixels.
+   - execute writes all samples of *out, [pings][receivers][samples]. It need not be linear, but the same samples give
+     the same bits, and the negated ones not the same image. It may change the values behind the arrays of *out, as an
+     estimated track: what follows is then planned anew, in the time, as the stage `plan`. It never changes sizes.
+   - All other rules hold. The host checks *out: at least 1 ping and receiver and 2 samples, all numbers finite.
+
    VERSIONS. Every struct begins with its size in bytes. Later headers only append fields, and count SAS_ABI up. The
    host takes plug-ins of older headers and refuses those of newer ones. A plug-in that must run under an older host as
    well asks by SAS_HAS whether a field is there. */
@@ -49,7 +59,7 @@
 extern "C" {
 #endif
 
-#define SAS_ABI                       1
+#define SAS_ABI                       2 /* 2: sas_filter_plugin */
 #define SAS_HAS(pointer, type, field) ((pointer)->size >= offsetof(type, field) + sizeof((pointer)->field))
 
 enum sas_status {
@@ -170,11 +180,27 @@ struct sas_algorithm {
     void (*destroy)(void *plan);
 };
 
-extern
+/* ABI 2. Echoes to echoes. */
+struct sas_filter {
+    uint32_t size, abi;                 /* sizeof(struct sas_filter), SAS_ABI */
+    const char *summary, *reference;    /* a line each */
+    uint32_t traits;                    /* 0 */
+    uint32_t setting_count;             /* at most 60 */
+    const struct sas_setting *settings; /* [setting_count] */
+    int (*plan)(const struct sas_problem *problem, struct sas_acquisition *out, void **plan);
+    int (*execute)(void *plan, const void *samples, void *filtered, void *run);
+    void (*work)(const void *plan, struct sas_work *work); /* flops and bytes; pairs stay 0 */
+    void (*destroy)(void *plan);
+};
+
 #ifdef __GNUC__
-    __attribute__((visibility("default")))
+#define SAS_VISIBLE __attribute__((visibility("default")))
+#else
+#define SAS_VISIBLE
 #endif
-    const struct sas_algorithm sas_plugin;
+/* A shared object defines one of them. */
+extern SAS_VISIBLE const struct sas_algorithm sas_plugin;
+extern SAS_VISIBLE const struct sas_filter sas_filter_plugin;
 
 #ifdef __cplusplus
 }

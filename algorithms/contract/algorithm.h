@@ -142,7 +142,8 @@ enum trait {
     TRAIT_ANY_TRACK = 2,      /* images any track in space, not only uniform straight ones */
     TRAIT_APERTURE_LIMIT = 4, /* honours aperture_limit pixel by pixel */
     TRAIT_WINDOW = 8,         /* forms a window of an image, of the pings that `reads` lists */
-    TRAIT_AREA = 16           /* removes what lies outside the scene's target area: far from the image of all echoes */
+    TRAIT_AREA = 16,          /* removes what lies outside the scene's target area: far from the image of all echoes */
+    TRAIT_FILTERED = 32       /* other algorithms' filters come first: not linear, and the work is of their echoes */
 };
 
 /* Settings that `auto` chooses among, as in a SPEC: fixed ones "key=value,key=value", and the values of one more key,
@@ -194,6 +195,12 @@ struct algorithm {
     enum status (*plan)(const struct problem *problem, const void *method, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
     enum status (*execute)(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
+    /* Of a filter, which forms no image but other echoes, in place of execute; what images them is another algorithm.
+       `filtered` copies the acquisition of its echoes, freed by the caller; `filter` writes their samples, and may
+       change what `filtered` copies, but its sizes. Errors: STATUS_FAILED naming what is not accepted; *out is then
+       empty. */
+    enum status (*filtered)(const void *plan, struct acquisition *out);
+    enum status (*filter)(void *plan, const void *samples, void *filtered, struct stages *stages);
     /* Set read[pings] where the plan reads a ping's records; other records may have any values. NULL: all. */
     void (*reads)(const void *plan, bool *read);
     struct work (*work)(const void *plan); /* may be slow: it counts what the timed plan does not need */

@@ -14,6 +14,8 @@ enum status command_conformance(const struct task *task)
         status =
             status_set(STATUS_INVALID, "conformance: %s chooses among the algorithms, which are checked one by one",
                        spec.algorithm->name);
+    else if (spec.algorithm->traits & TRAIT_FILTERED)
+        status = status_set(STATUS_INVALID, "conformance: filters form another image; must be one algorithm alone");
     else if (conformance_run(&spec, stdout, NULL, 0) > 0)
         status = status_set(STATUS_FAILED, "%s breaks promises: see BROKEN above", task->names[0]);
     spec_free(&spec);

@@ -110,6 +110,8 @@ enum status command_info(const struct task *task)
         return status_set(STATUS_INVALID, "info: '%.100s' has settings, must be the name of an algorithm alone",
                           task->names[0]);
     }
+    if (algorithm->filter)
+        printf("A filter, ahead of an algorithm: '%s | bp_sinc'\n", algorithm->name);
     printf("%s: %s\nreference: %s\n%s%s%straits: ", algorithm->name, algorithm->summary, algorithm->reference,
            algorithm->origin ? "origin: " : "", algorithm->origin ? algorithm->origin : "",
            algorithm->origin ? "\n" : "");

@@ -16,7 +16,7 @@
 static void check_work(const struct conformance *c, const char *place, const struct problem *problem, const void *plan)
 {
     const struct work work = c->algorithm->work(plan);
-    const struct work_bounds bounds = work_bounds(problem, &work);
+    const struct work_bounds bounds = work_bounds(c->algorithm, c->specs[problem->precision].options, problem, &work);
     if (isnan(work.flops) && isnan(work.pairs)) { /* said once */
         if (place == settings->name && problem->precision == PRECISION_DOUBLE)
             fprintf(c->stream, "  not checked: the counts of work, which an external program leaves empty\n");

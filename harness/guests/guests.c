@@ -15,9 +15,41 @@ static struct guest {
     char name[NAME_MOST + 1];
 } * guests;
 
+const char *guest_last(const char *spec)
+{
+    const char *at = spec;
+    for (const char *bar; guest_external.length(at) == 0 && (bar = strchr(at, '|'));) /* a command may have its own */
+        at = bar + 1 + strspn(bar + 1, " \t\n");
+    return at;
+}
+
+char *guest_settle(const char *spec)
+{
+    const char *last = guest_last(spec);
+    char *text = malloc(3 * strlen(spec) + 1), *to = text;
+    if (!text)
+        return NULL;
+    for (const char *at = spec + strspn(spec, " \t\n"); at < last; at += strspn(at, " \t\n")) {
+        const size_t length = strcspn(at, "|");
+        memcpy(to, at, length);
+        at += length + 1;
+        for (to += length; to > text && strchr(" \t\n", to[-1]);)
+            to--;
+        to = stpcpy(to, to > text ? " | " : "| ");
+    }
+    strcpy(to, last);
+    return text;
+}
+
 /* Of the name that a SPEC begins with, and its kind: NULL for the table's. */
 static size_t name_length(const char *spec, const struct guest_kind **kind)
 {
+    const char *last = guest_last(spec);
+    if (last > spec) {
+        const size_t length = name_length(last, kind);
+        *kind = &guest_chain;
+        return (size_t)(last - spec) + length;
+    }
     *kind = NULL;
     for (int k = 0; k < KINDS; k++) {
         const size_t length = kinds[k]->length(spec);

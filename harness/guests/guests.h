@@ -14,8 +14,9 @@ struct guest_kind {
        `method` included, stays until the program ends. Errors: STATUS_INVALID naming place and cause. */
     enum status (*make)(const char *name, struct algorithm *algorithm);
 };
-extern const struct guest_kind guest_plugin;   /* a shared object: plugin.c */
+extern const struct guest_kind guest_plugin;   /* a shared object: plugin_load.c */
 extern const struct guest_kind guest_external; /* any program: external.c */
+extern const struct guest_kind guest_chain;    /* filters ahead of an algorithm: imaging/chain.c; no row of `kinds` */
 
 /* Make the algorithm that a SPEC names, unless the table has it, or it was made before; it is kept until the program
    ends. Only for a SPEC that the user gave: it runs foreign code. Errors: as `make`. */
@@ -24,5 +25,10 @@ enum status guest_invite(const char *spec);
 /* The algorithm that a SPEC begins with, of the table or invited before; *rest is what follows its name, "" or
    ":settings". NULL without one; *rest then is behind the name that is not known. */
 const struct algorithm *guest_find(const char *spec, const char **rest);
+
+/* The last link of a chain "FILTER | FILTER | ALGORITHM:settings", without blanks ahead of it; else the SPEC itself. */
+const char *guest_last(const char *spec);
+/* The same SPEC with one blank on either side of each '|', malloc'ed; NULL without memory. */
+char *guest_settle(const char *spec);
 
 #endif

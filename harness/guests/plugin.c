@@ -1,6 +1,4 @@
 /* Shared objects as algorithms: sasbench.h on their side, struct algorithm on ours. */
-#include <dlfcn.h>
-#include <errno.h>
 #include <math.h>
 #include <omp.h>
 #include <stdarg.h>
@@ -13,19 +11,7 @@
 #include "contract/delay.h"
 #include "contract/param.h"
 #include "echoes/echo_data.h"
-#include "files/hash.h"
-#include "guests/guests.h"
-#include "sasbench.h"
-
-enum { SETTINGS_MOST = 60, TEXT_SIZE = 208 };
-
-/* One shared object, kept until the program ends. */
-struct plugin {
-    const char *name;
-    struct sas_algorithm theirs; /* fields beyond their header's are 0 */
-    struct param params[SETTINGS_MOST + 1];
-    char hash[HASH_TEXT];
-};
+#include "guests/plugin.h"
 
 /* A plan: what they see of the problem, and what the host's functions need. */
 struct plugin_plan {
@@ -34,6 +20,7 @@ struct plugin_plan {
     void *theirs;
     struct problem problem;
     struct sas_acquisition acquisition;
+    struct sas_acquisition out;      /* of a filter */
     struct sas_grid *grids;          /* [patch_count] */
     const struct sas_grid **patches; /* [patch_count] into them */
     double numbers[SETTINGS_MOST];
@@ -230,7 +217,7 @@ static void problem_show(struct plugin_plan *plan)
                                        &host};
 }
 
-static enum status plugin_plan(const struct problem *problem, const void *method, const void *options, void **out)
+enum status plugin_plan(const struct problem *problem, const void *method, const void *options, void **out)
 {
     const struct plugin *plugin = method;
     const size_t patches = (size_t)problem->patch_count, size = plugin->theirs.setting_count * (8 + TEXT_SIZE) + 1;
@@ -257,7 +244,10 @@ static enum status plugin_plan(const struct problem *problem, const void *method
             settings_show(plan, options, size - 1);
         problem_show(plan);
         reason_clear("plan");
-        status = returned(plugin, "plan", plugin->theirs.plan(&plan->shown, &plan->theirs));
+        plan->out = plan->acquisition;
+        status = returned(plugin, "plan",
+                          plugin->filter.plan ? plugin->filter.plan(&plan->shown, &plan->out, &plan->theirs)
+                                              : plugin->theirs.plan(&plan->shown, &plan->theirs));
     }
     if (status == STATUS_OK)
         *out = plan;
@@ -266,7 +256,7 @@ static enum status plugin_plan(const struct problem *problem, const void *method
     return status;
 }
 
-static enum status plugin_execute(void *data, const struct echoes *echoes, struct image *image, struct stages *stages)
+enum status plugin_execute(void *data, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
     const struct plugin_plan *plan = data;
     reason_clear("execute");
@@ -274,7 +264,61 @@ static enum status plugin_execute(void *data, const struct echoes *echoes, struc
                     plan->plugin->theirs.execute(plan->theirs, echoes->samples, image->pixels, stages));
 }
 
-static struct work plugin_work(const void *data)
+enum status plugin_filter(void *data, const void *samples, void *filtered, struct stages *stages)
+{
+    const struct plugin_plan *plan = data;
+    reason_clear("execute");
+    return returned(plan->plugin, "execute", plan->plugin->filter.execute(plan->theirs, samples, filtered, stages));
+}
+
+enum status plugin_filtered(const void *data, struct acquisition *out)
+{
+    const struct plugin_plan *plan = data;
+    const struct sas_acquisition *s = &plan->out;
+    const char *name = plan->plugin->name;
+    *out = (struct acquisition){0};
+    if (s->pings < 1 || s->receivers < 1 || s->samples < 2 || s->pulse_length < 0 || !s->t0_s || !s->tx_m || !s->rx_m
+        || !s->velocity_m_s || (s->pulse_length > 0 && !s->pulse))
+        return status_set(STATUS_FAILED,
+                          "%s: its echoes have %d pings, %d receivers, %d samples and a replica of %d samples, must be "
+                          "at least 1, 1, 2 and 0, with an array each",
+                          name, s->pings, s->receivers, s->samples, s->pulse_length);
+    const int replica = s->pulse_length;
+    *out = *plan->problem.acquisition;
+    out->pings = s->pings;
+    out->receivers = s->receivers;
+    out->samples = s->samples;
+    out->sound_speed = s->sound_speed_m_s;
+    out->fc = s->carrier_hz;
+    out->fs = s->sampling_hz;
+    out->bandwidth = s->bandwidth_hz;
+    out->tx_length = s->tx_length_m;
+    out->rx_length = s->rx_length_m;
+    out->aperture_limit = s->aperture_limit;
+    out->pulse_length = replica;
+    out->compressed = replica == 0;
+    out->pri = s->pings == plan->problem.acquisition->pings ? out->pri : 0;
+    enum status status = acquisition_allocate(out);
+    if (status != STATUS_OK)
+        return status;
+    const size_t pings = (size_t)s->pings, records = pings * (size_t)s->receivers;
+    memcpy(out->t0, s->t0_s, pings * sizeof *out->t0);
+    memcpy(out->tx, s->tx_m, pings * sizeof *out->tx);
+    memcpy(out->rx, s->rx_m, records * sizeof *out->rx);
+    memcpy(out->velocity, s->velocity_m_s, pings * sizeof *out->velocity);
+    if (replica > 0)
+        memcpy(out->pulse, s->pulse, (size_t)replica * sizeof *out->pulse);
+    status = acquisition_check(out, name);
+    if (status != STATUS_OK) {
+        acquisition_free(out);
+        char text[900];
+        snprintf(text, sizeof text, "%s", status_message());
+        status = status_set(STATUS_FAILED, "its echoes are refused: %s", text);
+    }
+    return status;
+}
+
+struct work plugin_work(const void *data)
 {
     const struct plugin_plan *plan = data;
     struct sas_work theirs = {.size = sizeof theirs};
@@ -287,144 +331,10 @@ static struct work plugin_work(const void *data)
     return work;
 }
 
-static void plugin_destroy(void *data)
+void plugin_destroy(void *data)
 {
     struct plugin_plan *plan = data;
     if (plan)
         plan->plugin->theirs.destroy(plan->theirs);
     plan_free(plan);
 }
-
-/* ---- loading ---- */
-
-/* One setting: numbers and indices have 8 bytes of the options each, texts TEXT_SIZE behind them. */
-static enum status setting_take(struct plugin *plugin, uint32_t k, const struct sas_setting *s)
-{
-    struct param *param = &plugin->params[k];
-    const bool text = s->kind == SAS_TEXT;
-    *param =
-        (struct param){.name = s->name,
-                       .summary = s->summary,
-                       .type = s->kind == SAS_INTEGER ? PARAM_INTEGER
-                               : s->kind == SAS_REAL  ? PARAM_REAL
-                               : text                 ? PARAM_TEXT
-                                                      : PARAM_CHOICE,
-                       .offset = 8 * (size_t)(text ? plugin->theirs.setting_count : k) + (text ? k * TEXT_SIZE : 0),
-                       .size = text                  ? TEXT_SIZE
-                               : s->kind == SAS_REAL ? sizeof(double)
-                                                     : sizeof(int),
-                       .initial = s->initial,
-                       .min = s->min,
-                       .max = s->max,
-                       .choices = s->kind == SAS_NAME ? s->names : NULL,
-                       .text = s->text ? s->text : "",
-                       .sweep = s->sweep};
-    int names = 0;
-    while (s->kind == SAS_NAME && s->names && s->names[names])
-        names++;
-    if (s->kind == SAS_NAME)
-        param->max = names - 1;
-    const char *fault = NULL;
-    if (s->kind < SAS_INTEGER || s->kind > SAS_TEXT)
-        fault = "its kind is none of enum sas_kind";
-    else if (!s->name || !*s->name || strpbrk(s->name, "=,:") || !s->summary || !*s->summary)
-        fault = "it needs a summary, and a name without '=', ',' and ':'";
-    else if (!text && !(s->initial >= param->min && s->initial <= param->max))
-        fault = "its default is not within its bounds, or not one of its names";
-    else if (text && (strlen(param->text) >= TEXT_SIZE || strchr(param->text, ',')))
-        fault = "its default text has a comma, or more than 200 characters";
-    return fault ? status_set(STATUS_INVALID, "%s: setting %d, '%.60s': %s", plugin->name, (int)k + 1,
-                              s->name ? s->name : "", fault)
-                 : STATUS_OK;
-}
-
-static enum status settings_take(struct plugin *plugin)
-{
-    const struct sas_algorithm *theirs = &plugin->theirs;
-    const uint32_t stride = theirs->setting_count > 0 ? theirs->settings[0].size : 0;
-    enum status status = STATUS_OK;
-    if (theirs->setting_count > SETTINGS_MOST || stride > sizeof(struct sas_setting))
-        status = status_set(STATUS_INVALID,
-                            "%s: it has %u settings of %u bytes each, must be at most %d of %zu bytes; a newer "
-                            "sasbench.h has more",
-                            plugin->name, theirs->setting_count, stride, SETTINGS_MOST, sizeof(struct sas_setting));
-    for (uint32_t k = 0; k < theirs->setting_count && status == STATUS_OK; k++) {
-        struct sas_setting setting = {.size = 0};
-        memcpy(&setting, (const char *)theirs->settings + (size_t)k * stride, stride);
-        status = setting_take(plugin, k, &setting);
-    }
-    return status;
-}
-
-static enum status plugin_take(struct plugin *plugin, const struct sas_algorithm *theirs)
-{
-    static const size_t least = offsetof(struct sas_algorithm, destroy) + sizeof theirs->destroy;
-    if (theirs->abi < 1 || theirs->abi > SAS_ABI)
-        return status_set(STATUS_INVALID, "%s: its sas_plugin has ABI %u%s; this program takes 1 to %d", plugin->name,
-                          theirs->abi, theirs->abi > SAS_ABI ? ", of a newer sasbench.h" : "", SAS_ABI);
-    if (theirs->size < least || theirs->size > sizeof *theirs)
-        return status_set(STATUS_INVALID, "%s: its struct sas_algorithm has %u bytes%s; this program takes %zu to %zu",
-                          plugin->name, theirs->size, theirs->size > least ? ", of a newer sasbench.h" : "", least,
-                          sizeof *theirs);
-    memcpy(&plugin->theirs, theirs, theirs->size);
-    if (!theirs->plan || !theirs->execute || !theirs->work || !theirs->destroy || !theirs->summary
-        || !theirs->reference)
-        return status_set(STATUS_INVALID,
-                          "%s: its sas_plugin leaves out summary, reference, plan, execute, work or destroy",
-                          plugin->name);
-    return settings_take(plugin);
-}
-
-static size_t plugin_length(const char *spec)
-{
-    for (const char *at = strstr(spec, ".so"); at; at = strstr(at + 1, ".so"))
-        if (at > spec && (at[3] == '\0' || at[3] == ':'))
-            return (size_t)(at + 3 - spec);
-    return 0;
-}
-
-/* dlopen takes a name without a slash for one of the system's libraries. */
-static enum status plugin_make(const char *name, struct algorithm *algorithm)
-{
-    char path[4096];
-    struct plugin *plugin = calloc(1, sizeof *plugin);
-    if (!plugin)
-        return status_set(STATUS_FAILED, "%s: out of memory", name);
-    plugin->name = name;
-    snprintf(path, sizeof path, "%s%s", strchr(name, '/') ? "" : "./", name);
-    enum status status = STATUS_OK;
-    void *object = NULL;
-    if (!hash_file(path, plugin->hash))
-        status = status_set(STATUS_INVALID, "%s: cannot be read: %s", name, strerror(errno));
-    else if (!(object = dlopen(path, RTLD_NOW | RTLD_LOCAL)))
-        status = status_set(STATUS_INVALID, "%s: cannot be loaded: %s", name, dlerror());
-    const struct sas_algorithm *theirs = object ? dlsym(object, "sas_plugin") : NULL;
-    if (object && !theirs)
-        status =
-            status_set(STATUS_INVALID, "%s: defines no `sas_plugin`, the constant of sasbench.h that a plug-in is: %s",
-                       name, dlerror());
-    if (theirs)
-        status = plugin_take(plugin, theirs);
-    if (status != STATUS_OK) {
-        if (object)
-            dlclose(object);
-        free(plugin);
-        return status;
-    }
-    const size_t count = theirs->setting_count;
-    *algorithm = (struct algorithm){.name = name,
-                                    .origin = plugin->hash,
-                                    .summary = plugin->theirs.summary,
-                                    .reference = plugin->theirs.reference,
-                                    .traits = plugin->theirs.traits & (SAS_ANY_TRACK | SAS_APERTURE_LIMIT),
-                                    .options_size = count * (8 + TEXT_SIZE),
-                                    .params = plugin->params,
-                                    .method = plugin,
-                                    .plan = plugin_plan,
-                                    .execute = plugin_execute,
-                                    .work = plugin_work,
-                                    .destroy = plugin_destroy};
-    return STATUS_OK;
-}
-
-const struct guest_kind guest_plugin = {plugin_length, plugin_make};

@@ -2,8 +2,10 @@
 #include "imaging/imaging.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "backprojection/pairs/pairs.h"
+#include "contract/param.h"
 #include "echoes/echo_data.h"
 
 enum status imaging_open(const struct spec *spec, const struct problem *problem, struct imaging *imaging)
@@ -91,11 +93,33 @@ enum status imaging_form(const struct spec *spec, const struct problem *problem,
 /* Where no pairs are summed at least a product a sample, or a pair where these are fewer: samples that no pixel needs
    may be left out. Not twice the work of summing every sample for each pair and transforming each record: ours take
    .001 to .8 of that. */
-struct work_bounds work_bounds(const struct problem *problem, const struct work *work)
+struct work_bounds work_bounds(const struct algorithm *algorithm, const void *options, const struct problem *problem,
+                               const struct work *work)
 {
     const struct acquisition *a = problem->acquisition;
-    const double pairs = pairs_count(problem), samples = a->samples + a->pulse_length;
+    struct acquisition limited = *a;
+    struct problem own = *problem;
+    for (const struct param *param = algorithm->origin ? NULL : algorithm->params; param && param->name; param++)
+        if (strcmp(param->name, "aperture") == 0 && param_load(param, options) < 1) /* 1: all */
+            limited.aperture_limit = fmin(limited.aperture_limit, param_load(param, options));
+    own.acquisition = &limited;
+    const double pairs = pairs_count(&own), samples = a->samples + a->pulse_length;
     const double records = (double)a->pings * a->receivers;
     return (struct work_bounds){pairs, work->pairs > 0 ? 8 * work->pairs : 2 * fmin(records * a->samples, pairs),
                                 2 * (pairs * 8 * samples + records * 5 * samples * log2(samples))};
+}
+
+enum status work_check(const char *name, const struct work_bounds *bounds, const struct work *work)
+{
+    if (isnan(work->flops) && isnan(work->pairs))
+        return STATUS_OK;
+    if (work->pairs != 0 && work->pairs != bounds->pairs)
+        return status_set(STATUS_FAILED, "%s: its work has %.9g pairs, must be 0 or %.9g", name, work->pairs,
+                          bounds->pairs);
+    if (!(work->flops >= bounds->flops_least && work->flops <= bounds->flops_most))
+        return status_set(STATUS_FAILED, "%s: its work has %.3g FLOPs, must be %.3g to %.3g", name, work->flops,
+                          bounds->flops_least, bounds->flops_most);
+    if (!(work->bytes >= 0 && isfinite(work->bytes)))
+        return status_set(STATUS_FAILED, "%s: its work has %.3g bytes, must be at least 0", name, work->bytes);
+    return STATUS_OK;
 }

@@ -37,10 +37,15 @@ void imaging_close(struct imaging *imaging);
 enum status imaging_form(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
                          struct image *image, struct work *work);
 
-/* What an algorithm may say of its work on a problem: all pairs (pairs_count) or none, and FLOPs from least to most. */
+/* What an algorithm with these options may say of its work on a problem: all pairs (pairs_count; within its setting
+   `aperture`, if it has one) or none, and FLOPs from least to most. */
 struct work_bounds {
     double pairs, flops_least, flops_most;
 };
-struct work_bounds work_bounds(const struct problem *problem, const struct work *work);
+struct work_bounds work_bounds(const struct algorithm *algorithm, const void *options, const struct problem *problem,
+                               const struct work *work);
+/* Is the work within its bounds? Empty counts (NAN, of external programs) pass. Errors: STATUS_FAILED naming the
+   count. */
+enum status work_check(const char *name, const struct work_bounds *bounds, const struct work *work);
 
 #endif

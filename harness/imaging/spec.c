@@ -226,8 +226,16 @@ enum status spec_parse(const char *text, struct spec *spec)
 enum status spec_asked(const char *text, struct spec *spec)
 {
     *spec = (struct spec){.algorithm = NULL};
-    const enum status status = guest_invite(text);
-    return status == STATUS_OK ? spec_parse(text, spec) : status;
+    char *settled = guest_settle(text);
+    enum status status = settled ? guest_invite(settled) : status_set(STATUS_FAILED, "SPEC '%.100s': no memory", text);
+    if (status == STATUS_OK)
+        status = spec_parse(settled, spec);
+    free(settled);
+    if (status != STATUS_OK || !spec->algorithm->filter)
+        return status;
+    spec_free(spec);
+    return status_set(STATUS_INVALID, "SPEC '%.100s' is a filter; an algorithm must follow it: '%.100s | bp_sinc'",
+                      text, text);
 }
 
 void spec_free(struct spec *spec)

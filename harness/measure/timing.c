@@ -80,8 +80,8 @@ static double system_s(void)
 struct trial {
     struct imaging *imaging;
     struct echoes *echoes;
-    int runs;           /* so far; while odd, the echoes are negated */
-    double complex sum; /* of the last image */
+    int runs;               /* so far; while odd, the echoes are negated */
+    double complex sums[2]; /* of the last image, and of the one before it */
 };
 
 static void image_spoil(const struct image *image)
@@ -113,6 +113,27 @@ static double complex image_sum(const struct image *image)
     return sum;
 }
 
+/* The images before it were of the negated echoes, and of the same. Filters need not be linear; but the same echoes
+   have the same image, and the negated ones another, unless it is kept. */
+static enum status sum_check(const struct trial *trial, double complex sum)
+{
+    const struct algorithm *algorithm = trial->imaging->algorithm;
+    const double complex negated = trial->sums[0], same = trial->sums[1];
+    const bool filtered = algorithm->traits & TRAIT_FILTERED;
+    if (trial->runs < 2 || !isfinite(cabs(sum)) || !isfinite(cabs(negated)))
+        return STATUS_OK;
+    if (filtered && sum == negated && sum != 0)
+        return status_set(STATUS_FAILED, "%s: the image of the negated echoes is the same image (run %d)",
+                          algorithm->name, trial->runs);
+    if (filtered && trial->runs > 2 && isfinite(cabs(same)) && sum != same)
+        return status_set(STATUS_FAILED, "%s: the same echoes have another image (run %d)", algorithm->name,
+                          trial->runs);
+    if (!filtered && sum != -negated)
+        return status_set(STATUS_FAILED, "%s: the image of the negated echoes is not the negated image (run %d)",
+                          algorithm->name, trial->runs);
+    return STATUS_OK;
+}
+
 /* Pixels that the imaging leaves unwritten stay NaN, which imaging_finish refuses. */
 static enum status run_once(struct trial *trial, struct stages *stages, double *seconds)
 {
@@ -121,23 +142,31 @@ static enum status run_once(struct trial *trial, struct stages *stages, double *
     double start = stages->mark;
     enum status status = imaging_execute(trial->imaging, trial->echoes, stages);
     *seconds = seconds_now() - start;
-    const double complex sum = image_sum(&trial->imaging->image), before = trial->sum;
+    const double complex sum = image_sum(&trial->imaging->image);
     echoes_negate(trial->echoes);
-    trial->sum = sum;
     trial->runs++;
-    if (status == STATUS_OK && trial->runs > 1 && isfinite(cabs(sum)) && isfinite(cabs(before)) && sum != -before)
-        return status_set(STATUS_FAILED, "%s: the image of the negated echoes is not the negated image (run %d)",
-                          trial->imaging->algorithm->name, trial->runs);
+    if (status == STATUS_OK)
+        status = sum_check(trial, sum);
+    trial->sums[1] = trial->sums[0];
+    trial->sums[0] = sum;
     return status;
 }
 
-/* Restore the echoes and their image. */
-static void trial_end(struct trial *trial)
+/* Restore the echoes and their image; filters, which need not be linear, form it again. */
+static enum status trial_end(struct trial *trial)
 {
+    struct stages stages;
+    double seconds;
+    if (trial->runs % 2 == 0 && trial->imaging->algorithm->traits & TRAIT_FILTERED) {
+        const enum status status = run_once(trial, &stages, &seconds);
+        echoes_negate(trial->echoes);
+        return status;
+    }
     if (trial->runs % 2 == 1)
         echoes_negate(trial->echoes);
     else
         image_negate(&trial->imaging->image);
+    return STATUS_OK;
 }
 
 /* s of processor time that the process used, and external programs. */
@@ -199,9 +228,10 @@ static enum status try_runs(struct trial *trial, const struct budget *budget, st
 {
     const int threads = omp_get_max_threads();
     const double begin = seconds_now(), busy = busy_s();
-    const enum status status = repeat(trial, budget, samples);
+    enum status status = repeat(trial, budget, samples);
     const double processors = (busy_s() - busy) / (seconds_now() - begin);
-    trial_end(trial);
+    const enum status ended = trial_end(trial);
+    status = status == STATUS_OK ? ended : status;
     if (status == STATUS_OK && processors > THREADS_SLACK * threads)
         return status_set(STATUS_FAILED, "%s kept %.1f processors busy with --threads %d",
                           trial->imaging->algorithm->name, processors, threads);
@@ -305,7 +335,7 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     imaging_close(&imaging);
     if (status == STATUS_OK) {
         const struct work *work = &timing->work;
-        const struct work_bounds bounds = work_bounds(problem, work);
+        const struct work_bounds bounds = work_bounds(spec->algorithm, spec->options, problem, work);
         double sorted[TIMING_CONTROLS];
         timing->drift = after / before - 1;
         for (int k = 0; k < samples->controls; k++)
@@ -317,14 +347,8 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
                                 "a run of %s takes %g s, of the scalar reference loop %g s: the system's "
                                 "clock stands still",
                                 spec->algorithm->name, timing->run_min_s, timing->control_s);
-        else if (isnan(work->flops) && isnan(work->pairs)) /* an external program's, left empty */
-            status = STATUS_OK;
-        else if (work->pairs != 0 && work->pairs != bounds.pairs)
-            status = status_set(STATUS_FAILED, "%s: its work has %.9g pairs, must be 0 or %.9g", spec->algorithm->name,
-                                work->pairs, bounds.pairs);
-        else if (!(work->flops >= bounds.flops_least && work->flops <= bounds.flops_most))
-            status = status_set(STATUS_FAILED, "%s: its work has %.3g FLOPs, must be %.3g to %.3g",
-                                spec->algorithm->name, work->flops, bounds.flops_least, bounds.flops_most);
+        else if (!(spec->algorithm->traits & TRAIT_FILTERED)) /* a chain checks its last link's */
+            status = work_check(spec->algorithm->name, &bounds, work);
     }
     if (status != STATUS_OK)
         image_free(image);

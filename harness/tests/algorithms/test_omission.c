@@ -8,6 +8,7 @@
 #include "backprojection/pairs/omission.h"
 #include "backprojection/pairs/pairs.h"
 #include "contract/condition.h"
+#include "imaging/imaging.h"
 #include "tests/support.h"
 
 /* Speckle before an array whose pings lie half of it apart. */
@@ -173,6 +174,11 @@ static void pings_left_out(void **state)
         assert_int_equal(support_image(some, problem, &spoilt, &unread), STATUS_OK);
         assert_true(support_difference(&unread, &by_scene) == 0);
         const struct work whole = support_work(all, problem), part = support_work(some, problem);
+        struct spec spec;
+        assert_int_equal(spec_parse(some, &spec), STATUS_OK);
+        const struct work_bounds bounds = work_bounds(spec.algorithm, spec.options, &problem, &part);
+        assert_int_equal(work_check(some, &bounds, &part), STATUS_OK);
+        spec_free(&spec);
         const double records = (part.flops - 8 * part.pairs) / (whole.flops - 8 * whole.pairs);
         print_message("%s: %.3f of the pairs, %.3f of the records' FLOPs for %d of %d pings\n", engines[k],
                       part.pairs / whole.pairs, records, count, pings);

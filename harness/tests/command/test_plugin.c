@@ -167,10 +167,10 @@ static void faulty_objects_are_refused(void **state)
     } faults[] = {
         {"symbol",
          "s/sas_plugin =/another =/; s/sizeof sas_plugin/sizeof another/",
-         {"defines no `sas_plugin`", "symbol"}},
+         {"defines neither `sas_plugin` nor `sas_filter_plugin`", "symbol"}},
         {"newer",
          "s/SAS_ABI/SAS_ABI + 1/",
-         {"has ABI 2, of a newer sasbench.h; this program takes 1 to 1", "newer.so"}},
+         {"has ABI 3, of a newer sasbench.h; this program takes 1 to 2", "newer.so"}},
         {"none", "s/SAS_ABI/0/", {"has ABI 0; this program takes", "none.so"}},
         {"size",
          "s/sizeof sas_plugin/sizeof sas_plugin + 8/",
@@ -270,6 +270,86 @@ static void promises_are_checked(void **state)
     outcome_free(&outcome);
 }
 
+/* Ahead of an algorithm: the track as it was flown brings the focus back, in 45 lines. */
+static void filters_come_first(void **state)
+{
+    (void)state;
+    assert_shell("test $(wc -l <track.c) -le 60 && ./plug track track.c && awk 'BEGIN { pi = 3.14159265358979; "
+                 "for (p = 0; p < 18; p++) printf \"0 %.9f 0\\n\", .002 * sin(2 * pi * p * .064 / .8 + pi / 6) }' "
+                 ">offsets.txt",
+                 0);
+    static const char *const run[ARGUMENTS_MAX] = {
+        "run", "study/sway",
+        "-a",  "bp_farrow",
+        "-a",  " ./track.so|bp_farrow:degree=5",
+        "-a",  "./track.so | ./track.so:offsets=offsets.txt | mine.so:precision=double",
+        "-o",  "filtered"};
+    program_good(run);
+    char *blurred = cell_of("filtered/measurements.csv", 0, "error_flown");
+    char *focused = cell_of("filtered/measurements.csv", 1, "error_flown");
+    assert_cell("filtered/measurements.csv", 1, "algorithm", "./track.so | bp_farrow");
+    assert_cell("filtered/measurements.csv", 1, "options", "degree=5");
+    assert_cell("filtered/measurements.csv", 2, "algorithm", "./track.so | ./track.so:offsets=offsets.txt | mine.so");
+    assert_cell("filtered/measurements.csv", 2, "status", "ok");
+    assert_true(atof(focused) > 0 && atof(focused) < .25 * atof(blurred));
+    free(blurred);
+    free(focused);
+    char *stages = cell_of("filtered/measurements.csv", 2, "stages");
+    assert_non_null(strstr(stages, "filter_2="));
+    free(stages);
+    program_good((const char *const[ARGUMENTS_MAX]){"image", "--scene", "study/quick", "-a", "./track.so | bp_sinc",
+                                                    "-o", "filtered.png"});
+    assert_shell("sed 's/\"none\"/\"nobody\"/' track.c >other.c && ./plug track other.c", 0);
+    struct outcome outcome = program_run(run);
+    assert_int_equal(outcome.status, 0);
+    assert_non_null(strstr(outcome.err, "the algorithm ./track.so | bp_farrow has changed"));
+    outcome_free(&outcome);
+    static const struct refusal refusals[] = {
+        {{"run", "study/quick", "-a", "./track.so", "-o", "x"}, {"is a filter; an algorithm must follow it"}},
+        {{"run", "study/quick", "-a", "| bp_sinc", "-o", "x"}, {"a filter is missing ahead of '|'"}},
+        {{"run", "study/quick", "-a", "./track.so |", "-o", "x"}, {"an algorithm is missing behind '|'"}},
+        {{"run", "study/quick", "-a", "bp_sinc | bp_sinc", "-o", "x"}, {"forms images, so it must be the last link"}},
+        {{"run", "study/quick", "-a", "./track.so | auto", "-o", "x"}, {"chooses by the unfiltered echoes"}},
+        {{"run", "study/quick", "-a", "./track.so:precision=float | bp_sinc", "-o", "x"}, {"precision"}},
+    };
+    assert_all_refused(refusals, COUNT_OF(refusals));
+    assert_shell("\"$SASBENCH_PROGRAM\" conformance './track.so | bp_sinc' 2>&1 | grep -q 'one algorithm alone'", 0);
+}
+
+/* A fault of a filter loses the chain's row alone. */
+static void filters_lose_their_row(void **state)
+{
+    static const struct {
+        const char *edit, *reason;
+    } faults[] = {
+        {"s/    memcpy(filtered, samples.*/    (void)samples, (void)filtered, (void)data;/",
+         "left samples unwritten, or they are not finite"},
+        {"s/    memcpy(filtered, samples.*/    *(char *)samples = *(char *)data, abort(), (void)filtered;/",
+         "ended by signal 6"},
+        {"s/    out->tx_m = tx;/    out->pings = 0, out->tx_m = tx;/", "have 0 pings"},
+        {"s/    out->tx_m = tx;/    out->sampling_hz = 0, out->tx_m = tx;/", "its echoes are refused: "},
+        {"s/    out->tx_m = tx;/    tx[1] = 0.0 \\/ 0.0, out->tx_m = tx;/", "its echoes are refused: "},
+        {"s/work->flops = 0/work->flops = -1e9/", "its work has -1e+09 FLOPs"},
+        {"s/    FILE \\*file = fopen.*/    FILE *file = NULL;/", "0 of 18 pings' offsets in offsets.txt"},
+    };
+    (void)state;
+    for (size_t k = 0; k < COUNT_OF(faults); k++) {
+        char line[700];
+        snprintf(line, sizeof line,
+                 "sed '%s' track.c >bad%zu.c && ! cmp -s track.c bad%zu.c && ./plug bad%zu bad%zu.c && rm -rf lost && "
+                 "{ \"$SASBENCH_PROGRAM\" run study/quick -a bp_nearest -a './bad%zu.so | bp_sinc' -o lost; "
+                 "test $? -eq 1; }",
+                 faults[k].edit, k, k, k, k, k);
+        assert_shell(line, 0);
+        assert_cell("lost/measurements.csv", 0, "status", "ok");
+        assert_cell("lost/measurements.csv", 1, "status", "failed");
+        char *reason = cell_of("lost/measurements.csv", 1, "reason");
+        if (!strstr(reason, faults[k].reason))
+            fail_msg("%s: %s; must say %s", faults[k].edit, reason, faults[k].reason);
+        free(reason);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -277,6 +357,7 @@ int main(void)
         cmocka_unit_test(rebuilt_is_measured_anew), cmocka_unit_test(names_stay_apart),
         cmocka_unit_test(earlier_header_is_taken),  cmocka_unit_test(faulty_objects_are_refused),
         cmocka_unit_test(faults_lose_their_row),    cmocka_unit_test(promises_are_checked),
+        cmocka_unit_test(filters_come_first),       cmocka_unit_test(filters_lose_their_row),
     };
     return cmocka_run_group_tests_name("plugin", tests, plugin_make, folder_remove);
 }

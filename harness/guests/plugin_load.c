@@ -1,0 +1,180 @@
+/* Shared objects as algorithms: loading one, and reading what it states of itself. */
+#include <dlfcn.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "guests/guests.h"
+#include "guests/plugin.h"
+
+/* One setting: numbers and indices have 8 bytes of the options each, texts TEXT_SIZE behind them. */
+static enum status setting_take(struct plugin *plugin, uint32_t k, const struct sas_setting *s)
+{
+    struct param *param = &plugin->params[k];
+    const bool text = s->kind == SAS_TEXT;
+    *param =
+        (struct param){.name = s->name,
+                       .summary = s->summary,
+                       .type = s->kind == SAS_INTEGER ? PARAM_INTEGER
+                               : s->kind == SAS_REAL  ? PARAM_REAL
+                               : text                 ? PARAM_TEXT
+                                                      : PARAM_CHOICE,
+                       .offset = 8 * (size_t)(text ? plugin->theirs.setting_count : k) + (text ? k * TEXT_SIZE : 0),
+                       .size = text                  ? TEXT_SIZE
+                               : s->kind == SAS_REAL ? sizeof(double)
+                                                     : sizeof(int),
+                       .initial = s->initial,
+                       .min = s->min,
+                       .max = s->max,
+                       .choices = s->kind == SAS_NAME ? s->names : NULL,
+                       .text = s->text ? s->text : "",
+                       .sweep = s->sweep};
+    int names = 0;
+    while (s->kind == SAS_NAME && s->names && s->names[names])
+        names++;
+    if (s->kind == SAS_NAME)
+        param->max = names - 1;
+    const char *fault = NULL;
+    if (s->kind < SAS_INTEGER || s->kind > SAS_TEXT)
+        fault = "its kind is none of enum sas_kind";
+    else if (!s->name || !*s->name || strpbrk(s->name, "=,:") || !s->summary || !*s->summary)
+        fault = "it needs a summary, and a name without '=', ',' and ':'";
+    else if (!text && !(s->initial >= param->min && s->initial <= param->max))
+        fault = "its default is not within its bounds, or not one of its names";
+    else if (text && (strlen(param->text) >= TEXT_SIZE || strchr(param->text, ',')))
+        fault = "its default text has a comma, or more than 200 characters";
+    return fault ? status_set(STATUS_INVALID, "%s: setting %d, '%.60s': %s", plugin->name, (int)k + 1,
+                              s->name ? s->name : "", fault)
+                 : STATUS_OK;
+}
+
+static enum status settings_take(struct plugin *plugin)
+{
+    const struct sas_algorithm *theirs = &plugin->theirs;
+    const uint32_t stride = theirs->setting_count > 0 ? theirs->settings[0].size : 0;
+    enum status status = STATUS_OK;
+    if (theirs->setting_count > SETTINGS_MOST || stride > sizeof(struct sas_setting))
+        status = status_set(STATUS_INVALID,
+                            "%s: it has %u settings of %u bytes each, must be at most %d of %zu bytes; a newer "
+                            "sasbench.h has more",
+                            plugin->name, theirs->setting_count, stride, SETTINGS_MOST, sizeof(struct sas_setting));
+    for (uint32_t k = 0; k < theirs->setting_count && status == STATUS_OK; k++) {
+        struct sas_setting setting = {.size = 0};
+        memcpy(&setting, (const char *)theirs->settings + (size_t)k * stride, stride);
+        status = setting_take(plugin, k, &setting);
+    }
+    return status;
+}
+
+/* Versions of the constant `what`, whose struct is `type`. */
+static enum status version_check(const struct plugin *plugin, const char *what, const char *type, uint32_t abi,
+                                 uint32_t size, size_t least, size_t most)
+{
+    if (abi < 1 || abi > SAS_ABI)
+        return status_set(STATUS_INVALID, "%s: its %s has ABI %u%s; this program takes 1 to %d", plugin->name, what,
+                          abi, abi > SAS_ABI ? ", of a newer sasbench.h" : "", SAS_ABI);
+    if (size < least || size > most)
+        return status_set(STATUS_INVALID, "%s: its struct %s has %u bytes%s; this program takes %zu to %zu",
+                          plugin->name, type, size, size > least ? ", of a newer sasbench.h" : "", least, most);
+    return STATUS_OK;
+}
+
+/* Its common fields go to `theirs`, which names and settings are read from. */
+static enum status filter_take(struct plugin *plugin, const struct sas_filter *filter)
+{
+    static const size_t least = offsetof(struct sas_filter, destroy) + sizeof filter->destroy;
+    const enum status status =
+        version_check(plugin, "sas_filter_plugin", "sas_filter", filter->abi, filter->size, least, sizeof *filter);
+    if (status != STATUS_OK)
+        return status;
+    memcpy(&plugin->filter, filter, filter->size);
+    plugin->theirs = (struct sas_algorithm){.summary = filter->summary,
+                                            .reference = filter->reference,
+                                            .setting_count = filter->setting_count,
+                                            .settings = filter->settings,
+                                            .work = filter->work,
+                                            .destroy = filter->destroy};
+    if (!filter->plan || !filter->execute || !filter->work || !filter->destroy || !filter->summary
+        || !filter->reference)
+        return status_set(STATUS_INVALID,
+                          "%s: its sas_filter_plugin leaves out summary, reference, plan, execute, work or destroy",
+                          plugin->name);
+    return settings_take(plugin);
+}
+
+static enum status plugin_take(struct plugin *plugin, const struct sas_algorithm *theirs)
+{
+    static const size_t least = offsetof(struct sas_algorithm, destroy) + sizeof theirs->destroy;
+    const enum status status =
+        version_check(plugin, "sas_plugin", "sas_algorithm", theirs->abi, theirs->size, least, sizeof *theirs);
+    if (status != STATUS_OK)
+        return status;
+    memcpy(&plugin->theirs, theirs, theirs->size);
+    if (!theirs->plan || !theirs->execute || !theirs->work || !theirs->destroy || !theirs->summary
+        || !theirs->reference)
+        return status_set(STATUS_INVALID,
+                          "%s: its sas_plugin leaves out summary, reference, plan, execute, work or destroy",
+                          plugin->name);
+    return settings_take(plugin);
+}
+
+static size_t plugin_length(const char *spec)
+{
+    for (const char *at = strstr(spec, ".so"); at; at = strstr(at + 1, ".so"))
+        if (at > spec && (at[3] == '\0' || at[3] == ':'))
+            return (size_t)(at + 3 - spec);
+    return 0;
+}
+
+/* dlopen takes a name without a slash for one of the system's libraries. */
+static enum status plugin_make(const char *name, struct algorithm *algorithm)
+{
+    char path[4096];
+    struct plugin *plugin = calloc(1, sizeof *plugin);
+    if (!plugin)
+        return status_set(STATUS_FAILED, "%s: out of memory", name);
+    plugin->name = name;
+    snprintf(path, sizeof path, "%s%s", strchr(name, '/') ? "" : "./", name);
+    enum status status = STATUS_OK;
+    void *object = NULL;
+    if (!hash_file(path, plugin->hash))
+        status = status_set(STATUS_INVALID, "%s: cannot be read: %s", name, strerror(errno));
+    else if (!(object = dlopen(path, RTLD_NOW | RTLD_LOCAL)))
+        status = status_set(STATUS_INVALID, "%s: cannot be loaded: %s", name, dlerror());
+    const struct sas_algorithm *theirs = object ? dlsym(object, "sas_plugin") : NULL;
+    const struct sas_filter *filter = object && !theirs ? dlsym(object, "sas_filter_plugin") : NULL;
+    if (object && !theirs && !filter)
+        status = status_set(STATUS_INVALID,
+                            "%s: defines neither `sas_plugin` nor `sas_filter_plugin`, one of which a plug-in has "
+                            "(sasbench.h)",
+                            name);
+    if (theirs)
+        status = plugin_take(plugin, theirs);
+    if (filter)
+        status = filter_take(plugin, filter);
+    if (status != STATUS_OK) {
+        if (object)
+            dlclose(object);
+        free(plugin);
+        return status;
+    }
+    const size_t count = plugin->theirs.setting_count;
+    *algorithm = (struct algorithm){.name = name,
+                                    .origin = plugin->hash,
+                                    .summary = plugin->theirs.summary,
+                                    .reference = plugin->theirs.reference,
+                                    .traits = plugin->theirs.traits & (SAS_ANY_TRACK | SAS_APERTURE_LIMIT),
+                                    .options_size = count * (8 + TEXT_SIZE),
+                                    .params = plugin->params,
+                                    .method = plugin,
+                                    .plan = plugin_plan,
+                                    .execute = filter ? NULL : plugin_execute,
+                                    .filtered = filter ? plugin_filtered : NULL,
+                                    .filter = filter ? plugin_filter : NULL,
+                                    .work = plugin_work,
+                                    .destroy = plugin_destroy};
+    return STATUS_OK;
+}
+
+const struct guest_kind guest_plugin = {plugin_length, plugin_make};
