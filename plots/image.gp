@@ -54,8 +54,8 @@ do for [k = 1:count] {
         name = kind == 1 ? panels[k] : differences[k]
         high_db = kind == 1 ? 0 : difference_top
         low_db = high_db - range_db
-        extent_x = x_high[k] - x_low[k]
-        extent_r = r_high[k] - r_low[k]
+        extent_x = 1.0*(x_high[k] - x_low[k])             # edges that are whole numbers are integers to gnuplot
+        extent_r = 1.0*(r_high[k] - r_low[k])
         # Pixels a metre, of each axis if it filled the panel.
         scale_x = panel_width/extent_x
         scale_r = panel_height/extent_r

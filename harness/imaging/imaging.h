@@ -38,7 +38,8 @@ enum status imaging_form(const struct spec *spec, const struct problem *problem,
                          struct image *image, struct work *work);
 
 /* What an algorithm with these options may say of its work on a problem: all pairs (pairs_count; within its setting
-   `aperture`, if it has one) or none, and FLOPs from least to most. */
+   `aperture`, if it has one) or none, and FLOPs from least to most, the most for ordinary scenes: images of few pixels
+   may take more, and timing then asks what processors can do in the time. */
 struct work_bounds {
     double pairs, flops_least, flops_most;
 };

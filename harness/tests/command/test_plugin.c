@@ -219,6 +219,7 @@ static void faults_lose_their_row(void **state)
         {"work", "s/work->pairs = .*/work->pairs = 0;/; s/work->flops = .*/work->flops = 1;/", "failed",
          "its work has 1 FLOPs, must be "},
         {"unknown", "s/work->flops = /&NAN * /", "failed", "its work has nan FLOPs, must be "},
+        {"boast", "s/work->flops = /&1e6 * /", "failed", "FLOPs, must be "},
         {"refuses", "0,/return SAS_OK/s//return problem->host->fail(SAS_UNSUPPORTED, \"%d pings\", a->pings)/",
          "unsupported", "./refuses.so: 18 pings"},
         {"silent", "0,/return SAS_OK/s//return 17/", "failed",

@@ -45,9 +45,13 @@ static void assert_nothing_left(void)
 static void image_is_drawn(void **state)
 {
     (void)state;
-    struct grid patches[] = {{-1, 0.01, 200, 40, 0.02, 50}, {5, 0.01, 1, 50, 0.02, 1}, {5, 0.01, 4, 50, 0.02, 1}};
+    /* The last one's edges are whole numbers, farther apart than the picture has pixels. */
+    struct grid patches[] = {{-1, 0.01, 200, 40, 0.02, 50},
+                             {5, 0.01, 1, 50, 0.02, 1},
+                             {5, 0.01, 4, 50, 0.02, 1},
+                             {0, 0.5, 520, -10000, 5000, 5}};
     struct image image;
-    assert_int_equal(image_allocate(3, patches, PRECISION_FLOAT, &image), STATUS_OK);
+    assert_int_equal(image_allocate(4, patches, PRECISION_FLOAT, &image), STATUS_OK);
     assert_drawn(plot_image(path_of("it's.png"), real_plots,
                             &(struct image_picture){.image = &image, .title = "all zero, 'quoted' \"twice\"\n\\n $x"}));
     assert_png("it's.png");
