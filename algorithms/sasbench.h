@@ -11,8 +11,8 @@
        image(p) = sum over pings and receivers of  s(q) exp(+j 2 pi fc tau),     q = (tau - t0[ping]) fs
        c tau = |tx - p| + |rx + velocity tau - p|           the exact delay (BP22 Eq. (1), LBF21 Eq. (1)); host->pair
 
-   where s is the range-compressed record of that ping and receiver, read between its samples at q. There is no 1/N: a
-   lone unit target shows the number of its pairs, with phase 0.
+   where s is the range-compressed record of that ping and receiver, read between its samples at q; taps of a kernel
+   beyond the record's ends read zero. There is no 1/N: a lone unit target shows the number of its pairs, with phase 0.
    - Which pairs count: 0 <= q <= samples - 1, both ends included, and |sin theta| <= aperture_limit. theta is the
      angle at the transmitter between the pixel and the plane normal to the track, which the beam's squint turns.
      host->pair decides it; host->pairs counts all of a problem, in turned grids as well. Without SAS_APERTURE_LIMIT
@@ -29,7 +29,8 @@
      threads. What it receives (problem, acquisition, patches, settings, host) stays valid until destroy, read only.
    - execute is timed. It goes from samples to pixels, writes every pixel, depends on nothing but the samples, linearly,
      and keeps nothing from one run for the next: every other run images the negated echoes. It allocates and maps no
-     memory, reads no sample beyond the array, and leaves OpenMP's settings as they are.
+     memory, reads no sample beyond the array, writes neither into the samples nor beside the image, ends the
+     threads that it began, and leaves OpenMP's settings as they are.
    - The same bits for any number of threads, and from run to run.
    - Concurrency: plan and destroy are called by one thread at a time. Several plans may live at once, and be executed
      at once by different threads. One plan is executed by one thread at a time, which may use `threads` threads.
@@ -160,12 +161,12 @@ enum sas_kind {
 };
 struct sas_setting {
     uint32_t size;
-    int32_t kind; /* enum sas_kind */
-    const char *name, *summary;
-    double initial, min, max; /* default (of SAS_NAME: its index) and closed bounds of numbers */
-    const char *const *names; /* of SAS_NAME, NULL-terminated */
-    const char *text;         /* default of SAS_TEXT; NULL: "" */
-    const char *sweep;        /* values that `sweep` runs, separated by blanks; may be NULL */
+    int32_t kind;               /* enum sas_kind */
+    const char *name, *summary; /* the name without blanks, '=', ',', ':' and '|'; not "precision" */
+    double initial, min, max;   /* default (of SAS_NAME: its index) and closed bounds of numbers */
+    const char *const *names;   /* of SAS_NAME, NULL-terminated */
+    const char *text;           /* default of SAS_TEXT; NULL: "" */
+    const char *sweep;          /* values that `sweep` runs, separated by blanks; may be NULL */
 };
 
 struct sas_algorithm {
