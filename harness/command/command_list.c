@@ -112,13 +112,19 @@ enum status command_info(const struct task *task)
     }
     if (algorithm->filter)
         printf("A filter, ahead of an algorithm: '%s | bp_sinc'\n", algorithm->name);
-    printf("%s: %s\nreference: %s\n%s%s%straits: ", algorithm->name, algorithm->summary, algorithm->reference,
+    printf("%s: %s\nreference: %s\n%s%s%s", algorithm->name, algorithm->summary, algorithm->reference,
            algorithm->origin ? "origin: " : "", algorithm->origin ? algorithm->origin : "",
            algorithm->origin ? "\n" : "");
-    print_traits(algorithm);
-    printf("\n" LAYOUT, "parameter", "default", "accepted", "sweep");
-    printf(LAYOUT, "precision", "float", "float, double", "float double");
-    table_text(stdout, 12, "of samples, sums and pixels; geometry is always double");
+    if (!algorithm->filter) {
+        printf("traits: ");
+        print_traits(algorithm);
+    }
+    if (!algorithm->filter || (algorithm->params && algorithm->params->name))
+        printf("\n" LAYOUT, "parameter", "default", "accepted", "sweep");
+    if (!algorithm->filter) { /* it has the precision of what follows */
+        printf(LAYOUT, "precision", "float", "float, double", "float double");
+        table_text(stdout, 12, "of samples, sums and pixels; geometry is always double");
+    }
     for (const struct param *p = algorithm->params; p && p->name; p++) {
         char initial[64], accepted[160];
         if (p->hidden)

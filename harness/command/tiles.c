@@ -300,11 +300,12 @@ enum status image_tiles(const struct task *task, const struct scene *scene, cons
     struct budget budget;
     char settings[1400];
     if (choice_asked(spec, &budget) || !(spec->algorithm->traits & TRAIT_WINDOW) || scene->patch_count != 1)
-        return status_set(STATUS_UNSUPPORTED,
-                          "image: --tile takes an image of one patch, by any algorithm but auto and wk_polar (whose "
-                          "filter needs the whole track: `filter` writes filtered echoes for the others); %s of %d "
-                          "patches is asked for",
-                          spec->algorithm->name, scene->patch_count);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "image: --tile takes an image of one patch, by any algorithm but auto, wk_polar (whose filter "
+            "needs the whole track: `filter` writes filtered echoes for the others), plug-ins, programs "
+            "and chains of filters; %s of %d patches is asked for",
+            spec->algorithm->name, scene->patch_count);
     struct shard shard;
     bool sealed = false;
     enum status status = shard_parse("image", task->shard, &shard);

@@ -14,6 +14,7 @@
 #include "echoes/echo_data.h"
 #include "guests/guests.h"
 #include "scene/simulate.h"
+#include "text/shown_text.h"
 
 enum { SECONDS_MOST = 600 }; /* of one check */
 
@@ -31,6 +32,7 @@ bool promise(const struct conformance *c, const char *place, bool kept, const ch
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    shown_make(text);
     fprintf(c->stream, "  %s %s: %s\n", kept ? "kept  " : "BROKEN", place, text);
     fflush(c->stream); /* ahead of a crash */
     *(kept ? &c->tally->kept : &c->tally->broken) += 1;
@@ -85,18 +87,15 @@ static void *guarded(const struct conformance *c, size_t size, bool behind)
 void conformance_execute(const struct conformance *c, const char *place, void *plan, const struct problem *problem,
                          const struct echoes *echoes, bool behind, struct image *image)
 {
-    struct echoes converted;
+    struct echoes converted, given;
     struct stages stages;
     const struct acquisition *a = problem->acquisition;
     const size_t size = precision_size(problem->precision);
     const size_t bytes = size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, size);
     conformance_need(c, echoes_convert(echoes, problem->precision, &converted));
-    void *samples = guarded(c, bytes, behind);
-    memcpy(samples, converted.samples, bytes);
-    echoes_free(&converted);
-    converted.acquisition = problem->acquisition;
-    converted.precision = problem->precision;
-    converted.samples = samples;
+    given = converted;
+    given.acquisition = problem->acquisition;
+    given.samples = memcpy(guarded(c, bytes, behind), converted.samples, bytes);
     *image = (struct image){problem->patch_count, problem->patches, problem->precision,
                             calloc((size_t)problem->patch_count, sizeof(void *))};
     for (int k = 0; k < problem->patch_count; k++) {
@@ -106,11 +105,14 @@ void conformance_execute(const struct conformance *c, const char *place, void *p
     }
     conformance_at(c, place);
     stages_begin(&stages);
-    const enum status status = c->algorithm->execute(plan, &converted, image, &stages);
+    const enum status status = c->algorithm->execute(plan, &given, image, &stages);
     if (status != STATUS_OK)
         promise(c, place, false, "execute returns status %d, \"%s\"", status, status_message());
+    if (memcmp(given.samples, converted.samples, bytes) != 0)
+        promise(c, place, false, "execute changes its samples, must only read them");
+    echoes_free(&converted);
     if (stages.count == 0)
-        promise(c, place, false, "execute names no stage, must call stages_end");
+        promise(c, place, false, "execute names no stage, must name at least one");
 }
 
 bool conformance_form(const struct conformance *c, const struct setting *setting, struct problem problem,

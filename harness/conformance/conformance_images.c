@@ -23,7 +23,7 @@ static void check_work(const struct conformance *c, const char *place, const str
         return;
     }
     promise(c, place, work.pairs == 0 || work.pairs == bounds.pairs,
-            "work.pairs is %.9g, must be 0 or what pairs_count counts, %.9g", work.pairs, bounds.pairs);
+            "work.pairs is %.9g, must be 0 or the number of pairs that count, %.9g", work.pairs, bounds.pairs);
     promise(c, place, work.flops >= bounds.flops_least && work.flops <= bounds.flops_most,
             "work.flops is %.3g, must be from %.3g to %.3g", work.flops, bounds.flops_least, bounds.flops_most);
     promise(c, place, *work.engine, "work.engine is \"%s\", must name the way that was chosen", work.engine);

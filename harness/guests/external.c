@@ -362,15 +362,11 @@ static size_t external_length(const char *spec)
 static enum status external_make(const char *name, struct algorithm *algorithm)
 {
     struct external *external = calloc(1, sizeof *external);
-    uint32_t code;
     if (!external)
         return status_set(STATUS_FAILED, "%s: out of memory", name);
     external->name = name;
     const char *fault = NULL;
-    for (const char *at = name; *at; at++)
-        if (control_length(at, &code) > 0)
-            fault = "it has a control character";
-    const int parsed = fault ? 0 : wordexp(name + strlen(PREFIX), &external->words, WRDE_NOCMD | WRDE_UNDEF);
+    const int parsed = wordexp(name + strlen(PREFIX), &external->words, WRDE_NOCMD | WRDE_UNDEF);
     if (parsed == WRDE_BADCHAR)
         fault = "one of |&;<>(){} needs quotes";
     else if (parsed == WRDE_BADVAL)
@@ -379,7 +375,7 @@ static enum status external_make(const char *name, struct algorithm *algorithm)
         fault = "commands are not substituted";
     else if (parsed != 0)
         fault = "a quote is not closed";
-    else if (!fault && external->words.we_wordc == 0)
+    else if (external->words.we_wordc == 0)
         fault = "the command is missing";
     if (fault) {
         if (parsed == 0)

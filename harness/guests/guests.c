@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "text/shown_text.h"
+
 enum { NAME_MOST = 200 }; /* file names of pictures hold it, and 255 characters at most */
 
 static const struct guest_kind *const kinds[] = {&guest_external, &guest_plugin};
@@ -80,7 +82,12 @@ enum status guest_invite(const char *spec)
     const char *rest;
     const struct guest_kind *kind;
     const size_t length = name_length(spec, &kind);
-    if (!kind || guest_find(spec, &rest))
+    if (!kind)
+        return STATUS_OK;
+    for (const char *at = spec; *at; at += shown_length(at))
+        if (shown_length(at) == 0) /* rows, tables and files of results would show another text */
+            return status_set(STATUS_INVALID, "SPEC '%.100s': it has a control character, or is not UTF-8", spec);
+    if (guest_find(spec, &rest))
         return STATUS_OK;
     if (length > NAME_MOST)
         return status_set(STATUS_INVALID, "SPEC '%.40s...': its name has %zu characters, must have at most %d", spec,

@@ -122,7 +122,7 @@ static int host_fail(int status, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    return (int)status_set((enum status)status, "%s", text);
+    return *text ? (int)status_set((enum status)status, "%s", text) : status;
 }
 
 static void host_stage(void *run, const char *name)

@@ -1,12 +1,23 @@
 /* Shared objects as algorithms: loading one, and reading what it states of itself. */
 #include <dlfcn.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "guests/guests.h"
 #include "guests/plugin.h"
+
+static bool name_taken(const struct plugin *plugin, uint32_t count, const char *name)
+{
+    bool taken = strcmp(name, "precision") == 0;
+    for (uint32_t k = 0; k < count; k++)
+        taken |= strcmp(plugin->params[k].name, name) == 0;
+    return taken;
+}
 
 /* One setting: numbers and indices have 8 bytes of the options each, texts TEXT_SIZE behind them. */
 static enum status setting_take(struct plugin *plugin, uint32_t k, const struct sas_setting *s)
@@ -38,10 +49,14 @@ static enum status setting_take(struct plugin *plugin, uint32_t k, const struct 
     const char *fault = NULL;
     if (s->kind < SAS_INTEGER || s->kind > SAS_TEXT)
         fault = "its kind is none of enum sas_kind";
-    else if (!s->name || !*s->name || strpbrk(s->name, "=,:") || !s->summary || !*s->summary)
-        fault = "it needs a summary, and a name without '=', ',' and ':'";
+    else if (!s->name || !*s->name || strpbrk(s->name, "=,:| \t\n") || !s->summary || !*s->summary)
+        fault = "it needs a summary, and a name without blanks, '=', ',', ':' and '|'";
+    else if (name_taken(plugin, k, s->name))
+        fault = "its name is that of another setting, or of precision, which all have";
     else if (!text && !(s->initial >= param->min && s->initial <= param->max))
         fault = "its default is not within its bounds, or not one of its names";
+    else if (s->kind != SAS_REAL && !text && s->initial != floor(s->initial))
+        fault = "its default is no whole number";
     else if (text && (strlen(param->text) >= TEXT_SIZE || strchr(param->text, ',')))
         fault = "its default text has a comma, or more than 200 characters";
     return fault ? status_set(STATUS_INVALID, "%s: setting %d, '%.60s': %s", plugin->name, (int)k + 1,
@@ -52,9 +67,12 @@ static enum status setting_take(struct plugin *plugin, uint32_t k, const struct 
 static enum status settings_take(struct plugin *plugin)
 {
     const struct sas_algorithm *theirs = &plugin->theirs;
-    const uint32_t stride = theirs->setting_count > 0 ? theirs->settings[0].size : 0;
+    const uint32_t stride = theirs->setting_count > 0 && theirs->settings ? theirs->settings[0].size : 0;
     enum status status = STATUS_OK;
-    if (theirs->setting_count > SETTINGS_MOST || stride > sizeof(struct sas_setting))
+    if (theirs->setting_count > 0 && !theirs->settings)
+        status = status_set(STATUS_INVALID, "%s: it has %u settings, but `settings` is NULL", plugin->name,
+                            theirs->setting_count);
+    else if (theirs->setting_count > SETTINGS_MOST || stride > sizeof(struct sas_setting))
         status = status_set(STATUS_INVALID,
                             "%s: it has %u settings of %u bytes each, must be at most %d of %zu bytes; a newer "
                             "sasbench.h has more",
@@ -127,32 +145,62 @@ static size_t plugin_length(const char *spec)
     return 0;
 }
 
+/* *object stays open, also where the status is not STATUS_OK. */
+static enum status object_take(struct plugin *plugin, const char *path, void **object)
+{
+    *object = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (!*object)
+        return status_set(STATUS_INVALID, "%s: cannot be loaded: %s", plugin->name, dlerror());
+    const struct sas_algorithm *theirs = dlsym(*object, "sas_plugin");
+    const struct sas_filter *filter = theirs ? NULL : dlsym(*object, "sas_filter_plugin");
+    if (theirs)
+        return plugin_take(plugin, theirs);
+    if (filter)
+        return filter_take(plugin, filter);
+    return status_set(STATUS_INVALID,
+                      "%s: defines neither `sas_plugin` nor `sas_filter_plugin`, one of which a plug-in has "
+                      "(sasbench.h)",
+                      plugin->name);
+}
+
+/* Load it in a child first: half of an object, a constructor or a wild pointer may end what loads it. */
+static enum status load_try(struct plugin *plugin, const char *path)
+{
+    enum { RETURNED = 83 };
+    int state = 0;
+    void *object;
+    const pid_t child = fork();
+    if (child == 0) {
+        object_take(plugin, path, &object);
+        _exit(RETURNED);
+    }
+    while (child > 0 && waitpid(child, &state, 0) < 0)
+        if (errno != EINTR)
+            return STATUS_OK;
+    if (child > 0 && WIFSIGNALED(state))
+        return status_set(STATUS_INVALID, "%s: cannot be loaded: this ends by signal %d (%s)", plugin->name,
+                          WTERMSIG(state), strsignal(WTERMSIG(state)));
+    if (child > 0 && WEXITSTATUS(state) != RETURNED)
+        return status_set(STATUS_INVALID, "%s: cannot be loaded: this ends the program with exit status %d",
+                          plugin->name, WEXITSTATUS(state));
+    return STATUS_OK;
+}
+
 /* dlopen takes a name without a slash for one of the system's libraries. */
 static enum status plugin_make(const char *name, struct algorithm *algorithm)
 {
     char path[4096];
+    void *object = NULL;
     struct plugin *plugin = calloc(1, sizeof *plugin);
     if (!plugin)
         return status_set(STATUS_FAILED, "%s: out of memory", name);
     plugin->name = name;
     snprintf(path, sizeof path, "%s%s", strchr(name, '/') ? "" : "./", name);
-    enum status status = STATUS_OK;
-    void *object = NULL;
-    if (!hash_file(path, plugin->hash))
-        status = status_set(STATUS_INVALID, "%s: cannot be read: %s", name, strerror(errno));
-    else if (!(object = dlopen(path, RTLD_NOW | RTLD_LOCAL)))
-        status = status_set(STATUS_INVALID, "%s: cannot be loaded: %s", name, dlerror());
-    const struct sas_algorithm *theirs = object ? dlsym(object, "sas_plugin") : NULL;
-    const struct sas_filter *filter = object && !theirs ? dlsym(object, "sas_filter_plugin") : NULL;
-    if (object && !theirs && !filter)
-        status = status_set(STATUS_INVALID,
-                            "%s: defines neither `sas_plugin` nor `sas_filter_plugin`, one of which a plug-in has "
-                            "(sasbench.h)",
-                            name);
-    if (theirs)
-        status = plugin_take(plugin, theirs);
-    if (filter)
-        status = filter_take(plugin, filter);
+    enum status status = hash_file(path, plugin->hash)
+                             ? load_try(plugin, path)
+                             : status_set(STATUS_INVALID, "%s: cannot be read: %s", name, strerror(errno));
+    if (status == STATUS_OK)
+        status = object_take(plugin, path, &object);
     if (status != STATUS_OK) {
         if (object)
             dlclose(object);
@@ -160,6 +208,7 @@ static enum status plugin_make(const char *name, struct algorithm *algorithm)
         return status;
     }
     const size_t count = plugin->theirs.setting_count;
+    const bool filter = plugin->filter.plan;
     *algorithm = (struct algorithm){.name = name,
                                     .origin = plugin->hash,
                                     .summary = plugin->theirs.summary,

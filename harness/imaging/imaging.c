@@ -2,11 +2,51 @@
 #include "imaging/imaging.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "backprojection/pairs/pairs.h"
 #include "contract/param.h"
 #include "echoes/echo_data.h"
+
+enum { FENCE = 4096, FENCE_BYTE = 0xa5 }; /* how many, and what they hold */
+
+static size_t patch_bytes(const struct image *image, int k)
+{
+    const struct grid *patch = &image->patches[k];
+    return size_product((size_t)patch->x_count, (size_t)patch->r_count, 1, precision_size(image->precision));
+}
+
+/* Ahead of each patch and behind: a guest that writes beside its image would break what others do later. */
+static enum status fences_set(struct imaging *imaging)
+{
+    for (int k = 0; k < imaging->image.patch_count; k++) {
+        const size_t bytes = patch_bytes(&imaging->image, k);
+        char *block = aligned_alloc(64, (bytes + 2 * FENCE + 63) / 64 * 64);
+        if (!block)
+            return status_set(STATUS_FAILED, "%s: no memory for its image", imaging->algorithm->name);
+        memset(block, FENCE_BYTE, bytes + 2 * FENCE);
+        free(imaging->image.pixels[k]);
+        imaging->image.pixels[k] = memset(block + FENCE, 0, bytes);
+        imaging->fenced++;
+    }
+    return STATUS_OK;
+}
+
+/* Were they left alone? */
+static bool fences_drop(struct imaging *imaging)
+{
+    bool held = true;
+    for (int k = 0; k < imaging->fenced; k++) {
+        const size_t bytes = patch_bytes(&imaging->image, k);
+        unsigned char *pixels = imaging->image.pixels[k], *block = pixels - FENCE;
+        for (size_t n = 0; n < FENCE; n++)
+            held = held && block[n] == FENCE_BYTE && pixels[bytes + n] == FENCE_BYTE;
+        imaging->image.pixels[k] = memmove(block, pixels, bytes);
+    }
+    imaging->fenced = 0;
+    return held;
+}
 
 enum status imaging_open(const struct spec *spec, const struct problem *problem, struct imaging *imaging)
 {
@@ -18,14 +58,16 @@ enum status imaging_open(const struct spec *spec, const struct problem *problem,
         imaging->part = grid_part(problem->patches, problem->window);
     const struct grid *patches = problem->window ? &imaging->part : problem->patches;
     enum status status = image_allocate(problem->patch_count, patches, problem->precision, &imaging->image);
+    if (status == STATUS_OK && spec->algorithm->origin)
+        status = fences_set(imaging);
     if (status == STATUS_OK) {
         double begin = seconds_now();
         status = algorithm_plan(spec->algorithm, problem, spec->options, &imaging->plan);
         imaging->plan_s = seconds_now() - begin;
     }
     if (status != STATUS_OK) {
-        image_free(&imaging->image);
-        *imaging = (struct imaging){0};
+        imaging->plan = NULL;
+        imaging_close(imaging);
     }
     return status;
 }
@@ -46,11 +88,13 @@ enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes
 enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image)
 {
     const char *name = imaging->algorithm->name;
-    enum status status = STATUS_OK;
+    const bool held = fences_drop(imaging);
+    enum status status = held ? STATUS_OK : status_set(STATUS_FAILED, "%s wrote outside its image", name);
     *image = imaging->image;
     imaging->image = (struct image){0};
-    if (!image_is_finite(image))
-        status = status_set(STATUS_FAILED, "%s made values that are not finite of finite echoes", name);
+    if (status == STATUS_OK && !image_is_finite(image))
+        status = status_set(STATUS_FAILED,
+                            "%s left pixels unwritten, or made values that are not finite of finite echoes", name);
     if (status == STATUS_OK)
         status = image_scale(image, echoes->exponent);
     if (status == STATUS_OK && !image_is_finite(image))
@@ -65,8 +109,9 @@ enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes,
 
 void imaging_close(struct imaging *imaging)
 {
-    if (imaging->algorithm)
+    if (imaging->plan)
         imaging->algorithm->destroy(imaging->plan);
+    fences_drop(imaging);
     image_free(&imaging->image);
     *imaging = (struct imaging){0};
 }

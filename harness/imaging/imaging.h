@@ -12,6 +12,7 @@ struct imaging {
     double plan_s;      /* s, what the plan took */
     struct grid part;   /* of a problem's window */
     struct image image; /* of the problem's patches, or of `part`, and of its precision */
+    int fenced;         /* of its patches, those with bytes beside them that a guest may not touch */
 };
 
 /* Allocate the image, then plan. Spec, problem's patches and acquisition outlive the imaging. Errors: STATUS_FAILED
@@ -27,8 +28,8 @@ enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes
 
 /* The finished image: checked, scaled by the echoes' exponent, handed over to the caller, who frees it with image_free;
    the imaging keeps none. Of a window, image->patches points into the imaging. Errors: STATUS_FAILED when a pixel is
-   not finite or memory is missing, STATUS_INVALID when the scaled image is beyond the range of double; *image is then
-   empty. */
+   not finite, a guest wrote outside the image, or memory is missing, STATUS_INVALID when the scaled image is beyond the
+   range of double; *image is then empty. */
 enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image);
 
 void imaging_close(struct imaging *imaging);

@@ -6,11 +6,13 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "common/clock.h"
+#include "common/memory.h"
 #include "echoes/echo_data.h"
 #include "guests/keeper.h"
 #include "imaging/imaging.h"
@@ -224,15 +226,39 @@ static enum status repeat(struct trial *trial, const struct budget *budget, stru
     return status;
 }
 
+/* A copy of a guest's samples, where there is room for one. */
+static void *samples_keep(const struct algorithm *guest, const struct echoes *echoes, size_t *size)
+{
+    const struct acquisition *a = echoes->acquisition;
+    *size = size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, precision_size(echoes->precision));
+    void *kept =
+        guest->origin && memory_check((double)*size, "a copy of the samples") == STATUS_OK ? malloc(*size) : NULL;
+    return kept ? memcpy(kept, echoes->samples, *size) : NULL;
+}
+
+/* Other algorithms image the same samples later. */
+static enum status samples_restore(const struct algorithm *guest, const struct echoes *echoes, const void *kept,
+                                   size_t size)
+{
+    if (!kept || memcmp(kept, echoes->samples, size) == 0)
+        return STATUS_OK;
+    memcpy((void *)echoes->samples, kept, size);
+    return status_set(STATUS_FAILED, "%s: it changed its samples, must only read them", guest->name);
+}
+
 /* Repeated runs, checked against their number of threads. */
 static enum status try_runs(struct trial *trial, const struct budget *budget, struct timing_samples *samples)
 {
     const int threads = omp_get_max_threads();
+    size_t size;
+    void *kept = samples_keep(trial->imaging->algorithm, trial->echoes, &size);
     const double begin = seconds_now(), busy = busy_s();
     enum status status = repeat(trial, budget, samples);
     const double processors = (busy_s() - busy) / (seconds_now() - begin);
     const enum status ended = trial_end(trial);
-    status = status == STATUS_OK ? ended : status;
+    const enum status restored = samples_restore(trial->imaging->algorithm, trial->echoes, kept, size);
+    free(kept);
+    status = restored != STATUS_OK ? restored : status == STATUS_OK ? ended : status;
     if (status == STATUS_OK && processors > THREADS_SLACK * threads)
         return status_set(STATUS_FAILED, "%s kept %.1f processors busy with --threads %d",
                           trial->imaging->algorithm->name, processors, threads);

@@ -144,6 +144,6 @@ void picture_path(const char *directory, const char *scene, const char *rest, ch
         return;
     snprintf(path + used, size - (size_t)used, "%s-%s", scene, rest);
     for (char *p = path + used; *p; p++)
-        if (strchr("/:,= \\", *p))
+        if (strchr("/:,= \\|&;<>()$`'\"*?[]{}", *p))
             *p = '_';
 }

@@ -126,7 +126,7 @@ static int metric_width(const struct column *column, bool blind)
 /* The columns ahead of the metrics: SPEC, time, speed-up and, where there is room, rate. */
 static void line_begin(FILE *stream, const char *spec, const char *time, const char *speed_up, const char *rate)
 {
-    fprintf(stream, "  %-*s %8s %8s", table.spec_width, spec, time, speed_up);
+    fprintf(stream, "  %s%*s %8s %8s", spec, table.spec_width - (int)shown_columns(spec), "", time, speed_up);
     if (table.width >= WIDTH_WIDE)
         fprintf(stream, " %9s", rate);
 }
@@ -308,7 +308,7 @@ static void ok_print(FILE *stream, const struct measurement *row, const char *sp
         warnings_print(stream, row->reason);
         return;
     }
-    const bool own_line = strlen(spec) > (size_t)table.spec_width;
+    const bool own_line = shown_columns(spec) > (size_t)table.spec_width;
     const bool blind = measurement_is_blind(row);
     if (blind && !table.blind) {
         line_begin(stream, "", "", "", "");

@@ -49,6 +49,14 @@ size_t shown_length(const char *text)
     return control_length(text, &code) > 0 ? 0 : character_read(text, &code);
 }
 
+size_t shown_columns(const char *text)
+{
+    size_t columns = 0;
+    for (; *text; text++)
+        columns += ((unsigned char)*text & 0xc0) != 0x80;
+    return columns;
+}
+
 void shown_make(char *text)
 {
     while (*text) {

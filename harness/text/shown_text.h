@@ -14,6 +14,9 @@ size_t control_length(const char *text, uint32_t *code);
 /* Length in bytes of the character at `text`, not its end: 0 for a control character and for invalid UTF-8. */
 size_t shown_length(const char *text);
 
+/* Columns of a text in UTF-8, each character one. */
+size_t shown_columns(const char *text);
+
 /* For a terminal: '?' replaces each byte that cannot be shown. */
 void shown_write(FILE *stream, const char *text);
 /* The same in place. */

@@ -205,6 +205,39 @@ static void faulty_objects_are_refused(void **state)
     assert_all_refused(refusals, COUNT_OF(refusals));
 }
 
+/* Nor what cannot be loaded without ending what loads it, nor a table of settings that cannot be given. */
+static void faulty_loads_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *edit, *says;
+    } faults[] = {
+        {"s/^static int make/__attribute__((constructor)) static void begin(void) { abort(); }\\n&/",
+         "cannot be loaded: this ends by signal 6"},
+        {"s/^static int make/__attribute__((constructor)) static void begin(void) { exit(0); }\\n&/",
+         "cannot be loaded: this ends the program with exit status 0"},
+        {"s/static const struct sas_setting/const struct sas_setting/; s/1, &taps/1, NULL/", "but `settings` is NULL"},
+        {"s/\"taps\"/\"precision\"/", "its name is that of another setting, or of precision"},
+        {"s/\"taps\"/\"two words\"/", "a name without blanks"},
+        {"s/8, 1, 64/2.5, 1, 64/", "its default is no whole number"},
+    };
+    for (size_t k = 0; k < COUNT_OF(faults); k++) {
+        char line[400], spec[40];
+        snprintf(spec, sizeof spec, "./load%zu.so", k);
+        snprintf(line, sizeof line, "sed '%s' mine.c >load.c && ! cmp -s mine.c load.c && ./plug load%zu load.c",
+                 faults[k].edit, k);
+        assert_shell(line, 0);
+        assert_all_refused(&(struct refusal){{"run", "study/quick", "-a", spec, "-o", "x"}, {spec, faults[k].says}}, 1);
+    }
+    assert_shell("head -c 3000 mine.so >half.so; cp mine.so \"$(printf 'a\\nb.so')\"", 0);
+    static const struct refusal refusals[] = {
+        {{"run", "study/quick", "-a", "./half.so", "-o", "x"}, {"half.so: cannot be loaded: "}},
+        {{"run", "study/quick", "-a", "a\nb.so", "-o", "x"}, {"it has a control character"}},
+        {{"run", "study/quick", "-a", "mine.so:taps=8\xff", "-o", "x"}, {"or is not UTF-8"}},
+    };
+    assert_all_refused(refusals, COUNT_OF(refusals));
+}
+
 /* A crash, a lie and a refusal lose their own row; the other algorithm keeps its own. */
 static void faults_lose_their_row(void **state)
 {
@@ -224,7 +257,16 @@ static void faults_lose_their_row(void **state)
          "unsupported", "./refuses.so: 18 pings"},
         {"silent", "0,/return SAS_OK/s//return 17/", "failed",
          "./silent.so: its plan returned status 17, must be 0 to 3"},
+        {"wordless", "0,/return SAS_OK/s//return problem->host->fail(SAS_FAILED, \"%s\", \"\")/", "failed",
+         "./wordless.so: its plan failed without a reason"},
+        {"ahead", "s/host->stage(run, \"focus\")/((char *)pixels[0])[-1] = 1, &/", "failed", "wrote outside its image"},
+        {"behind", "s/host->stage(run, \"focus\")/((char *)pixels[0])[8 * problem->pixels] = 1, &/", "failed",
+         "wrote outside its image"},
+        {"leaves", "s/n < problem->pixels/n < problem->pixels - 1/", "failed", "left pixels unwritten"},
+        {"writes", "s/host->stage(run, \"focus\")/((float *)samples)[3000] += 9, &/", "failed",
+         "it changed its samples, must only read them"},
     };
+    char *error = NULL; /* of the other, whatever a plug-in does to its samples */
     for (size_t k = 0; k < COUNT_OF(faults); k++) {
         char lines[600], spec[40], *reason;
         snprintf(spec, sizeof spec, "./%s.so", faults[k].name);
@@ -241,7 +283,10 @@ static void faults_lose_their_row(void **state)
             fail_msg("%s: %s", faults[k].name, reason);
         free(reason);
         assert_cell("lost/measurements.csv", 1, "status", "ok");
+        error = error ? error : cell_of("lost/measurements.csv", 1, "error");
+        assert_cell("lost/measurements.csv", 1, "error", error);
     }
+    free(error);
 }
 
 /* The template keeps its promises; a plug-in that does not is told which, all of them, with value and bound. */
@@ -261,7 +306,7 @@ static void promises_are_checked(void **state)
     assert_int_equal(outcome.status, 1);
     assert_non_null(strstr(outcome.out, "BROKEN raw: the gain's distance from 1 is 0.0"));
     assert_non_null(
-        strstr(outcome.out, "BROKEN raw: work.pairs is 25201, must be 0 or what pairs_count counts, 25200"));
+        strstr(outcome.out, "BROKEN raw: work.pairs is 25201, must be 0 or the number of pairs that count, 25200"));
     assert_non_null(strstr(outcome.out, "BROKEN one ping, double: images ended by signal 6 (Aborted)"));
     assert_non_null(strstr(outcome.out, "BROKEN sum of two echoes: "));
     assert_non_null(strstr(outcome.err, "./broken.so breaks promises: see BROKEN above"));
@@ -313,9 +358,17 @@ static void filters_come_first(void **state)
         {{"run", "study/quick", "-a", "bp_sinc | bp_sinc", "-o", "x"}, {"forms images, so it must be the last link"}},
         {{"run", "study/quick", "-a", "./track.so | auto", "-o", "x"}, {"chooses by the unfiltered echoes"}},
         {{"run", "study/quick", "-a", "./track.so:precision=float | bp_sinc", "-o", "x"}, {"precision"}},
+        {{"conformance", "./track.so"}, {"./track.so is a filter"}},
+        {{"conformance", "./track.so | bp_sinc"}, {"one algorithm alone"}},
+        {{"image", "--scene", "study/quick", "-a", "./track.so | bp_sinc", "--tile", "9x9", "-o", "x.mat"},
+         {"--tile", "chains of filters"}},
     };
     assert_all_refused(refusals, COUNT_OF(refusals));
-    assert_shell("\"$SASBENCH_PROGRAM\" conformance './track.so | bp_sinc' 2>&1 | grep -q 'one algorithm alone'", 0);
+    char *told = program_output((const char *const[ARGUMENTS_MAX]){"info", "./track.so"});
+    assert_non_null(strstr(told, "offsets"));
+    assert_null(strstr(told, "precision"));
+    assert_null(strstr(told, "traits"));
+    free(told);
 }
 
 /* A fault of a filter loses the chain's row alone. */
@@ -358,8 +411,9 @@ int main(void)
         cmocka_unit_test(header_is_public),         cmocka_unit_test(template_is_measured),
         cmocka_unit_test(rebuilt_is_measured_anew), cmocka_unit_test(names_stay_apart),
         cmocka_unit_test(earlier_header_is_taken),  cmocka_unit_test(faulty_objects_are_refused),
-        cmocka_unit_test(faults_lose_their_row),    cmocka_unit_test(promises_are_checked),
-        cmocka_unit_test(filters_come_first),       cmocka_unit_test(filters_lose_their_row),
+        cmocka_unit_test(faulty_loads_are_refused), cmocka_unit_test(faults_lose_their_row),
+        cmocka_unit_test(promises_are_checked),     cmocka_unit_test(filters_come_first),
+        cmocka_unit_test(filters_lose_their_row),
     };
     return cmocka_run_group_tests_name("plugin", tests, plugin_make, folder_remove);
 }
