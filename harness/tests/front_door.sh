@@ -70,6 +70,15 @@ touch "$folder/broken"
 says list 'a warning' 'sasbench: the build failed' 'status 1'
 rm "$folder/broken"
 
+# A build that meson was asked for by hand is kept; that of another folder is not.
+mkdir "$folder/root/build/meson-info"
+for source in "$folder/root" "$folder/moved"; do
+    rm "$folder/root/build/built-for"
+    printf '{"directories": {"source": "%s", "build": "%s/build", "info": ""}}' "$source" "$source" \
+        >"$folder/root/build/meson-info/meson-info.json"
+    if [ "$source" = "$folder/root" ]; then says list 'the program: list'; else says list "$building" 'the program: list'; fi
+done
+
 # Packages that are missing: a line; what apt says only where it fails.
 mkdir "$folder/apt"
 printf '#!/bin/sh\n' >"$folder/apt/dpkg-query"
