@@ -191,8 +191,9 @@ static enum status spec_read(const char *place, char *copy, struct spec *spec)
         struct name_list accepted = {.suggestion = suggestion_begin(copy)};
         for (int i = 0; algorithms[i]; i++)
             name_list_add(&accepted, algorithms[i]->name);
-        return status_set(STATUS_INVALID, "SPEC '%.100s': unknown algorithm '%.100s'%s accepted: %s", place, copy,
-                          name_list_meant(&accepted), accepted.text);
+        return status_set(STATUS_INVALID,
+                          "SPEC '%.100s': unknown algorithm '%.100s'%s accepted: %s, PLUGIN.so, external:COMMAND",
+                          place, copy, name_list_meant(&accepted), accepted.text);
     }
     if (spec->algorithm->options_size > 0) {
         spec->options = calloc(1, spec->algorithm->options_size);

@@ -232,6 +232,7 @@ static void faulty_loads_are_refused(void **state)
     assert_shell("head -c 3000 mine.so >half.so; cp mine.so \"$(printf 'a\\nb.so')\"", 0);
     static const struct refusal refusals[] = {
         {{"run", "study/quick", "-a", "./half.so", "-o", "x"}, {"half.so: cannot be loaded: "}},
+        {{"run", "study/quick", "-a", "mine.so,taps=8", "-o", "x"}, {"unknown algorithm", "PLUGIN.so"}},
         {{"run", "study/quick", "-a", "a\nb.so", "-o", "x"}, {"it has a control character"}},
         {{"run", "study/quick", "-a", "mine.so:taps=8\xff", "-o", "x"}, {"or is not UTF-8"}},
     };
