@@ -2,6 +2,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -171,6 +172,8 @@ static enum status load_try(struct plugin *plugin, const char *path)
     void *object;
     const pid_t child = fork();
     if (child == 0) {
+        for (int k = 1; k < SIGRTMIN; k++) /* no sanitizer's handler may answer in the object's place */
+            signal(k, SIG_DFL);
         object_take(plugin, path, &object);
         _exit(RETURNED);
     }
