@@ -71,18 +71,25 @@ static void kill_after(const char *const *arguments, double seconds)
     fclose(sink);
 }
 
-/* Half a run, as it is left by a signal. */
+/* A part of a run, as a signal leaves it: killed once `least` tiles are there. Another begins where one came to its end. */
 static void image_begin(const char *spec, const char *tile, int least)
 {
     const char *const arguments[ARGUMENTS_MAX] = {IMAGE(spec, "x.mat"), "--tile", tile};
-    int done = 0, count = 0;
-    for (double seconds = 0.02; done < least || done == count; seconds *= 1.3) {
+    int done, count;
+    do {
         unlink(path_of("x.mat" TILES_JOURNAL));
-        kill_after(arguments, seconds);
-        if (!tiles_claimed(path_of("x.mat"), &done, &count))
-            done = count = 0;
-        assert_true(seconds < 100);
-    }
+        FILE *sink = tmpfile();
+        assert_non_null(sink);
+        const pid_t child = program_start(arguments, sink, sink);
+        bool ended = false;
+        while (!ended && !(tiles_claimed(path_of("x.mat"), &done, &count) && done >= least)) {
+            nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+            ended = waitpid(child, NULL, WNOHANG) == child;
+        }
+        kill(child, SIGKILL);
+        assert_true(ended || waitpid(child, NULL, 0) == child);
+        fclose(sink);
+    } while (!tiles_claimed(path_of("x.mat"), &done, &count) || done < least || done == count);
 }
 
 static void killed(void **state)
