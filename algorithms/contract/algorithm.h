@@ -58,6 +58,7 @@ struct problem {
     int patch_count;                   /* >= 1 */
     const struct grid *patches;        /* [patch_count] */
     enum precision precision;          /* of samples, sums and pixels; geometry and phase are always double */
+    bool estimate;                     /* pairs, and what follows from them, may be counted to 2 %: nothing is imaged */
     const struct pixel_window *window; /* NULL: all; else TRAIT_WINDOW is needed, and patch_count 1 */
 };
 struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,

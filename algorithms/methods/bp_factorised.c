@@ -98,12 +98,12 @@ static enum status forecast_direct(const struct problem *problem, double error, 
     return status == STATUS_OK ? bp_forecast(problem, &branches, &direct_options, forecast) : status;
 }
 
-/* The number of levels with the least work; 0: back projection itself. */
+/* The number of levels with the least work, which falls and then rises with it; 0: back projection itself. */
 static enum status choose_stages(const struct problem *problem, struct tree_settings *settings,
                                  struct factorised_cost *chosen)
 {
     struct forecast direct;
-    double least = INFINITY;
+    double least = INFINITY, before = INFINITY;
     enum status status = forecast_direct(problem, settings->error, &direct);
     if (status == STATUS_OK)
         status = factorised_cost_direct(problem, &direct, &least);
@@ -118,8 +118,9 @@ static enum status choose_stages(const struct problem *problem, struct tree_sett
             *chosen = cost;
             settings->stages = tried.stages;
         }
-        if (pings >= problem->acquisition->pings)
+        if (status == STATUS_OK && (pings >= problem->acquisition->pings || factorised_pairs(&cost) > before))
             break;
+        before = factorised_pairs(&cost);
         pings *= tried.factor;
     }
     return status;

@@ -6,17 +6,32 @@
    to 18 % near the record's ends with pad = 1. The weights for the range interpolation are those at t + 2 X sin
    theta/c, and the beam's half width psi moves echoes by 2 X sin theta (1/cos psi - 1)/c: 3e-4 of the window in SQ18's
    scene. */
+#include <math.h>
+
 #include "range_migration/rma.h"
 #include "wavenumber/wk.h"
+
+static const char *const windows[] = {"kaiser", "none", NULL}, *const weightings[] = {"none", "hamming", NULL};
 
 static const struct param params[] = {
     WK_TAPS_PARAM,
     {PARAM(struct wk_options, pad), .summary = "length of the azimuth transform over the pings", .initial = 1.5,
      .min = 1, .max = 4, .sweep = "1 1.25 1.5 2"},
+    {PARAM_NAMED(struct wk_options, window, windows), .summary = "of the interpolations' taps; none: a truncated sinc",
+     .max = 1},
+    {PARAM_NAMED(struct wk_options, weighting, weightings),
+     .summary = "of the azimuth spectrum: lower side lobes, and another image than the others'", .max = 1},
     {.name = NULL},
 };
 
 static const struct wk_method method = {.name = "wk_squint", .rotates = true};
+
+/* Truncated sincs and weighted spectra are SQ18's, and no image of the reference. */
+static double promise(const void *options)
+{
+    const struct wk_options *o = options;
+    return o->window || o->weighting ? NAN : rma_promise(options);
+}
 
 static const struct candidate_family candidates[] = {
     {"", "taps", "4 6 8"},
@@ -35,7 +50,7 @@ const struct algorithm wk_squint = {
     .gated = gated,
     .candidates = candidates,
     .method = &method,
-    .promise = rma_promise,
+    .promise = promise,
     .forecast = wk_forecast,
     .cost = wk_cost,
     WK_CALLBACKS,

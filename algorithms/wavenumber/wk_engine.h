@@ -46,7 +46,7 @@ enum {
    u - 1/2, lowest power first: real [taps/2][WK_POWERS]. */
 struct wk_kernel {
     int taps;
-    double shape;
+    double shape; /* of the Kaiser window; 0: a truncated sinc, without weights */
     void *values;
 };
 

@@ -17,10 +17,12 @@ static const double EDGE_BINS = 1; /* at either end of the band, that are interp
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
-/* Of all interpolations of the spectrum, and of the image where it is resampled along both its axes. */
+/* Without a window, or with weights, there is no law. Else of all interpolations of the spectrum, and of the image where it is resampled along both its axes. */
 static double interpolations_error(const struct wk *wk)
 {
     const double padded = (double)wk->azimuth_length / wk->pings;
+    if (wk->options.window || wk->options.weighting)
+        return INFINITY;
     double squares = pow(kaiser_error(wk->taps, wk->oversampling), 2);
     if (wk->oversampling < WK_OVERSAMPLING)
         squares += EDGES * EDGES;

@@ -384,8 +384,8 @@ enum status wk_layout(struct wk *wk)
     if (status == STATUS_OK)
         status = lay_steps(wk);
     wk->line_stride = ((size_t)(wk->lines + WK_TILE - 1) / WK_TILE | 1) * WK_TILE;
-    wk->range_kernel = (struct wk_kernel){wk->taps, kaiser_shape(wk->taps, wk->oversampling), NULL};
-    double padded = wk->pings > 0 ? (double)wk->azimuth_length / wk->pings : 1;
-    wk->azimuth_kernel = (struct wk_kernel){wk->taps, kaiser_shape(wk->taps, fmax(padded, 1.0)), NULL};
+    const double padded = wk->pings > 0 ? (double)wk->azimuth_length / wk->pings : 1, windowed = !wk->options.window;
+    wk->range_kernel = (struct wk_kernel){wk->taps, windowed * kaiser_shape(wk->taps, wk->oversampling), NULL};
+    wk->azimuth_kernel = (struct wk_kernel){wk->taps, windowed * kaiser_shape(wk->taps, fmax(padded, 1.0)), NULL};
     return status;
 }

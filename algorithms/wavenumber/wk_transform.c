@@ -23,7 +23,10 @@ static real *scratch_of(const struct wk *wk)
 /* A kernel's tap t for a cell that lies u beyond the last bin ahead of it. */
 static double tap_value(const struct wk_kernel *kernel, int t, double u)
 {
-    return kaiser_value(kernel->taps, kernel->shape, u - (1 - kernel->taps / 2 + t));
+    const double distance = u - (1 - kernel->taps / 2 + t), turn = M_PI * distance;
+    if (kernel->shape > 0)
+        return kaiser_value(kernel->taps, kernel->shape, distance);
+    return fabs(distance) > 1e-9 ? sin(turn) / turn : 1;
 }
 
 static void range_kernel_fill(struct wk *wk)
@@ -54,7 +57,7 @@ static void azimuth_kernel_fill(struct wk *wk)
 /* 1 over the kernel's transform; constant outside of the samples. */
 static double weight_at(const struct wk_kernel *kernel, double place, double most)
 {
-    return 1 / kaiser_transform(kernel->taps, kernel->shape, fmin(fabs(place), most));
+    return kernel->shape > 0 ? 1 / kaiser_transform(kernel->taps, kernel->shape, fmin(fabs(place), most)) : 1;
 }
 
 static void weights_fill(struct wk *wk)
@@ -71,6 +74,19 @@ static void weights_fill(struct wk *wk)
         azimuth[n] = (real)((wk->angle != 0 ? weight_at(&wk->azimuth_kernel, place, 0.45) : 1)
                             * stretch_weight(&wk->stretch, wk->reversed ? wk->pings - 1 - n : n));
     }
+}
+
+/* The weight of a line of the spectrum: one, or a Hamming window over the beam: that of the echoes, or the transmitter's
+   down to its half power. */
+static double line_weight(const struct wk *wk, double kx)
+{
+    const struct acquisition *a = wk->problem.acquisition;
+    const double kr = 4 * M_PI * wk->fc / wk->sound_speed;
+    double half = a->tx_length > 0 ? wk->sound_speed / wk->fc / (2 * a->tx_length) : 1;
+    if (a->echo_sine > 0 && isfinite(a->echo_sine))
+        half = a->echo_sine;
+    const double place = fmin(fabs(kx / kr - sin(wk->squint - wk->angle)) / half, 1);
+    return wk->options.weighting ? 0.54 + 0.46 * cos(M_PI * place) : 1;
 }
 
 /* The azimuth sum over lines kx = kx_first + i kx_step onto columns x = x0 + j dx: one transform where 2 pi/(kx_step
@@ -91,7 +107,8 @@ static void azimuth_fill(struct wk *wk, struct wk_patch *patch)
     const double place = step * g->x_step, place_first = first * g->x_step;
     for (int i = 0; i < wk->lines; i++) {
         double weight = patch->resampled ? weight_at(&wk->range_kernel, place_first + i * place, 0.5) : 1;
-        before[i] = rotor((first + i * step) * g->x_first + square * i * i) * (real)weight;
+        before[i] = rotor((first + i * step) * g->x_first + square * i * i)
+                    * (real)(weight * line_weight(wk, wk->kx_first + i * wk->kx_step));
     }
     for (int j = 0; j < g->x_count; j++)
         after[j] = rotor(square * j * j + first * g->x_step * j) * (real)(patch->folds ? step : step / length);

@@ -52,5 +52,5 @@ static void work(const void *data, struct sas_work *work)
 
 static const struct sas_setting offsets = {.size = sizeof offsets, .kind = SAS_TEXT, .name = "offsets",
     .summary = "file of dx dy dz in m, a line a ping", .text = "offsets.txt"};
-const struct sas_filter sas_filter_plugin = {sizeof sas_filter_plugin, SAS_ABI, "places corrected by offsets", "none", 0,
-    1, &offsets, make, execute, work, free};
+const struct sas_filter sas_filter_plugin = {sizeof sas_filter_plugin, SAS_ABI, "places corrected by offsets", "none",
+    0, 1, &offsets, make, execute, work, free};

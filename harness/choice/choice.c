@@ -102,7 +102,9 @@ static enum status candidate_form(struct trial *t, struct candidate *c, const st
     enum status status = candidate_spec(&formed, precision, &spec);
     if (status != STATUS_OK)
         return status;
-    status = imaging_open(&spec, problem, &imaging);
+    struct problem counted = *problem;
+    counted.estimate = true;
+    status = imaging_open(&spec, &counted, &imaging);
     if (status == STATUS_OK) {
         *work = spec.algorithm->work(imaging.plan);
         const double bytes = process_bytes(t->setting.problem, work->bytes);

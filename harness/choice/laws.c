@@ -53,7 +53,7 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
     if (candidate->sine < 1) {
         limited.aperture_limit = candidate->sine;
         problem.acquisition = &limited;
-        candidate->pairs = pairs_count(&problem);
+        candidate->pairs = pairs_estimate(&problem);
         status = candidate->pairs >= 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (f->image_cost > 0)
@@ -231,7 +231,7 @@ enum status laws_fill(struct setting *setting, struct choice *choice)
     struct candidate *first = &choice->list[0];
     enum status status = STATUS_OK;
     setting->ratio = 1;
-    setting->pairs = pairs_count(setting->problem);
+    setting->pairs = pairs_estimate(setting->problem);
     if (!(setting->pairs >= 0))
         return STATUS_FAILED;
     for (int k = 0; k < all && status == STATUS_OK; k++) {

@@ -69,18 +69,23 @@ static enum status id_select(const char *id, struct selection *selection)
                               id, meant, accepted);
 }
 
-static enum status select_all(const char *const *ids, int count, struct selection *selection)
+/* Those of the request; quick, those without times, full-size scenes and scenes from seeds. */
+static enum status select_all(const struct reproduction *request, struct selection *selection)
 {
+    const bool all = request->count == 0;
     enum status status = STATUS_OK;
     if (selection->claims->count > CLAIMS_MAX)
         return status_set(STATUS_INVALID, "%s: %d claims; up to %d are accepted", CLAIMS_FILE, selection->claims->count,
                           CLAIMS_MAX);
-    for (int n = 0; n < count && status == STATUS_OK; n++)
-        status = id_select(ids[n], selection);
-    for (int k = 0; paper_tables[k].id && count == 0; k++)
-        selection->tables[k] = true;
-    for (int k = 0; k < selection->claims->count && count == 0; k++)
-        selection->asked[k] = true;
+    for (int n = 0; n < request->count && status == STATUS_OK; n++)
+        status = id_select(request->ids[n], selection);
+    for (int k = 0; paper_tables[k].id; k++)
+        selection->tables[k] =
+            (selection->tables[k] || all) && !(request->quick && table_is_full_size(&paper_tables[k]));
+    for (int k = 0; k < selection->claims->count; k++) {
+        const struct claim *claim = &selection->claims->claims[k];
+        selection->asked[k] = (selection->asked[k] || all) && !(request->quick && (claim->times || claim->rules));
+    }
     return status;
 }
 
@@ -200,7 +205,7 @@ static enum status selection_report(struct batch *batch, const struct selection 
         status = phase_study(directory, true);
     if (status == STATUS_OK && rules_asked(selection))
         status = rules_study(directory);
-    if (status == STATUS_OK)
+    if (status == STATUS_OK && batch->effort != EFFORT_NONE)
         status = figures_draw(directory, figure_asked, selection, &batch->undrawn);
     if (status == STATUS_OK)
         status = reproduced_report(directory, selection);
@@ -214,13 +219,14 @@ static enum status selection_report(struct batch *batch, const struct selection 
 }
 
 static enum status selection_reproduce(const struct selection *selection, const struct shard *shard,
-                                       const char *directory)
+                                       const char *directory, enum effort effort)
 {
     struct need needs[NEEDS_MAX];
     struct batch batch;
     const int count = needs_collect(selection, needs);
     enum status status = batch_open(directory, count, false, &batch);
     batch.shard = *shard;
+    batch.effort = effort;
     if (status == STATUS_OK)
         status = scenes_measure(&batch, needs, count, batch_cells);
     if (status == STATUS_OK)
@@ -235,39 +241,62 @@ static enum status selection_reproduce(const struct selection *selection, const 
     return batch_close(&batch, status);
 }
 
-static enum status sensitivity_reproduce(const char *directory, const struct claims *claims)
+static enum status sensitivity_reproduce(const char *directory, const char *untimed, const struct claims *claims)
 {
     int lock = -1;
     enum status status = directory_make(directory);
     if (status == STATUS_OK)
         status = folder_take(directory, &lock);
     if (status == STATUS_OK)
-        status = sensitivity_study(directory, claims, needs_measure);
+        status = sensitivity_study(directory, untimed, claims, needs_measure);
     folder_leave(lock);
     return status;
 }
 
-enum status papers_reproduce(const char *const *ids, int count, const char *directory, const char *part)
+/* Times, and what is only measured together with them, have rows of their own: those without times are no part of a
+   whole run. */
+#define UNTIMED "untimed"
+
+static enum status request_check(const struct reproduction *request, bool sensitivity)
+{
+    if (sensitivity && request->shard)
+        return status_set(STATUS_INVALID, "reproduce: --shard %s: sensitivity is measured as a whole, without it",
+                          request->shard);
+    if (sensitivity && request->quick)
+        return status_set(STATUS_INVALID, "reproduce: --quick: sensitivity has no times, and is measured as a whole");
+    if (request->docs && (request->quick || request->shard || (request->count > 0 && !sensitivity)))
+        return status_set(STATUS_INVALID,
+                          "reproduce: --docs goes with all tables and claims, or with sensitivity; "
+                          "not with %s",
+                          request->quick   ? "--quick"
+                          : request->shard ? "--shard"
+                                           : request->ids[0]);
+    return directory_check(request->directory);
+}
+
+enum status papers_reproduce(const struct reproduction *request)
 {
     struct claims claims = {0};
     struct selection selection = {.claims = &claims};
     struct shard shard;
-    const bool sensitivity = count == 1 && strcmp(ids[0], "sensitivity") == 0;
-    enum status status = shard_parse("reproduce", part, &shard);
-    if (status == STATUS_OK && sensitivity && part)
-        status =
-            status_set(STATUS_INVALID, "reproduce: --shard %s: sensitivity is measured as a whole, without it", part);
+    char untimed[4200];
+    const bool sensitivity = request->count == 1 && strcmp(request->ids[0], "sensitivity") == 0;
+    enum status status = shard_parse("reproduce", request->shard, &shard);
     if (status == STATUS_OK)
-        status = directory_check(directory);
+        status = request_check(request, sensitivity);
     if (status == STATUS_OK)
         status = claims_read(CLAIMS_FILE, &claims);
+    snprintf(untimed, sizeof untimed, "%s/" UNTIMED, request->directory);
     if (status == STATUS_OK && sensitivity) {
-        status = sensitivity_reproduce(directory, &claims);
+        status = sensitivity_reproduce(request->directory, untimed, &claims);
     } else if (status == STATUS_OK) {
-        status = select_all(ids, count, &selection);
+        status = select_all(request, &selection);
         if (status == STATUS_OK)
-            status = selection_reproduce(&selection, &shard, directory);
+            status = selection_reproduce(&selection, &shard, request->quick ? untimed : request->directory,
+                                         request->quick ? EFFORT_NONE : EFFORT_WHOLE);
     }
+    if (status == STATUS_OK && request->docs)
+        status = pages_write(request->directory, PAGES_DIRECTORY, &claims);
     claims_free(&claims);
     return status;
 }

@@ -5,11 +5,19 @@
 #include "claims/claims.h"
 #include "contract/status.h"
 
-/* The tables of these ids (all of them when count is 0), measured where the folder does not have them yet. A shard
-   ("3/8", NULL: none) is measured alone. Errors:
-   STATUS_INVALID for an unknown id (listing the accepted ones), a folder whose claims.csv is the list of claims, or
-   files that cannot be read or written; STATUS_FAILED when a measurement failed. */
-enum status papers_reproduce(const char *const *ids, int count, const char *directory, const char *part);
+/* What `reproduce` is asked for; texts are borrowed. */
+struct reproduction {
+    const char *const *ids; /* [count] tables, claims, or `sensitivity` alone; 0: all tables and claims */
+    int count;
+    const char *directory, *shard; /* shard: "3/8", or NULL; it is measured alone */
+    bool quick;                    /* image quality and phase alone: no times, full-size scenes or scenes from seeds */
+    bool docs;                     /* write the pages of docs/papers afterwards */
+};
+/* Measure what the folder does not have yet, and report it. What is quick, and `sensitivity`, is measured into
+   DIR/untimed. Errors: STATUS_INVALID for an unknown id (listing the accepted ones), parts of the request that exclude
+   each other, a folder whose claims.csv is the list of claims, or files that cannot be read or written; STATUS_FAILED
+   when a measurement failed. */
+enum status papers_reproduce(const struct reproduction *request);
 
 enum { TABLES_MAX = 64 };
 
@@ -20,17 +28,24 @@ struct selection {
 };
 
 /* Print the requested tables and claims. Write them into reproduced.csv and claims.csv, with all others that the folder
-   has the measurements of, so that no earlier result is lost. If all claims are requested, verdicts.md counts and lists
-   them. Errors: those of measured_read, of files that cannot be written, of memory. */
+   has the measurements of, so that no earlier result is lost. Errors: those of measured_read, of files that cannot be
+   written, of memory. */
 enum status reproduced_report(const char *directory, const struct selection *selection);
 
-/* Measure, under each set of assumptions and into DIR/sensitivity, what the verdicts of BP22, ZP15 and LBF21 on image
-   quality and phase rest on. Write DIR/sensitivity.md: the verdicts that flip, a row a claim, a column a set of
-   assumptions, and the IDs of those that do not. Verdicts on times, and those without a scene, are left out; what a set
-   does not change is measured once. `measure` measures needs into a folder, which it makes. Errors: of measuring; of
-   files. */
-enum status sensitivity_study(const char *directory, const struct claims *claims,
+/* The head of a file: "sasbench WHAT 1", where, when and with what it was measured. */
+void reproduced_head(FILE *file, const char *what, const struct measured *measured);
+
+/* Measure into `untimed`, under each set of assumptions, what the verdicts on image quality and phase rest on. Write
+   DIR/sensitivity.csv: a row a claim, scheme and set, with the verdict. Verdicts on times, and those without a scene,
+   are left out; what a set does not change is measured once. `measure` measures needs into a folder, which it makes.
+   Errors: of measuring; of files. */
+enum status sensitivity_study(const char *directory, const char *untimed, const struct claims *claims,
                               enum status (*measure)(const char *directory, struct need *needs, int count));
+
+/* One page a paper, as Markdown, from claims.csv, reproduced.csv, sensitivity.csv (unless it is missing) and the
+   pictures of the folder `from`, into the folder `to`, which is made: what does not hold, how near the printed numbers
+   are, each table, figure and claim. Errors: of files; STATUS_INVALID where a claim is missing in claims.csv. */
+enum status pages_write(const char *from, const char *to, const struct claims *claims);
 
 /* Of each claim by its place in the list. */
 struct verdicts {
@@ -45,9 +60,5 @@ void verdicts_add(struct verdicts *verdicts, int claim, const struct evaluation 
 
 /* The counts of the evaluated claims, by scheme. */
 void verdicts_print(FILE *stream, const struct verdicts *verdicts);
-
-/* Write the counts by paper and scheme, and a row for each evaluated claim, in Markdown; `head`: what was measured with
-   what. Errors: of files. */
-enum status verdicts_write(const char *path, const char *head, const struct verdicts *verdicts);
 
 #endif

@@ -12,8 +12,7 @@
 #include "files/text_file.h"
 #include "show/table.h"
 
-/* The head of a file: where, when and with what it was measured. */
-static void head_write(FILE *file, const char *what, const struct measured *measured)
+void reproduced_head(FILE *file, const char *what, const struct measured *measured)
 {
     const struct csv *csv = &measured->measurements.csv;
     fprintf(file, "# sasbench %s 1\n", what);
@@ -37,7 +36,7 @@ static enum status reproduced_write(const char *directory, const struct measured
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    head_write(file.stream, "reproduced", measured);
+    reproduced_head(file.stream, "reproduced", measured);
     fputs("table,item,quantity,definition,unit,paper,ours,difference,assumption\n", file.stream);
     for (int k = 0; k < count; k++) {
         const struct reproduced *l = &lines[k];
@@ -114,23 +113,6 @@ static void claim_print(const struct claim *claim, const struct evaluation evalu
                claim_verdict_names[evaluations[scheme].verdict], evaluations[scheme].evidence);
 }
 
-/* If all claims are requested: how many have each verdict, as a page. */
-static enum status verdicts_page(const char *directory, const struct verdicts *verdicts,
-                                 const struct measured *measured)
-{
-    const struct csv *csv = &measured->measurements.csv;
-    const char *date = csv_comment(csv, "date"), *commit = csv_comment(csv, "commit"),
-               *machine = csv_comment(csv, "machine");
-    char path[4200], head[600];
-    for (int k = 0; k < verdicts->claims->count; k++)
-        if (!verdicts->evaluated[k])
-            return STATUS_OK;
-    snprintf(path, sizeof path, "%s/verdicts.md", directory);
-    snprintf(head, sizeof head, "%s, commit %s, %s, load %.2f a processor.", date ? date : "no date",
-             commit ? commit : "unknown", machine ? machine : "unknown machine", measured->load);
-    return verdicts_write(path, head, verdicts);
-}
-
 /* Write claims.csv: the requested claims, which are printed, too, and those that the folder can decide already. */
 static enum status claims_report(const char *directory, const struct selection *selection, struct measured *measured)
 {
@@ -143,7 +125,7 @@ static enum status claims_report(const char *directory, const struct selection *
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    head_write(file.stream, "claims", measured);
+    reproduced_head(file.stream, "claims", measured);
     fputs("id,paper,section,claim,verdict,corrected,basis,evidence\n", file.stream);
     for (int n = 0; n < selection->claims->count; n++) {
         const struct claim *claim = &selection->claims->claims[n];
@@ -165,8 +147,7 @@ static enum status claims_report(const char *directory, const struct selection *
     }
     if (asked)
         verdicts_print(stdout, &verdicts);
-    status = text_file_close(&file, STATUS_OK);
-    return status == STATUS_OK ? verdicts_page(directory, &verdicts, measured) : status;
+    return text_file_close(&file, STATUS_OK);
 }
 
 /* Lines of tables that were not requested stay if the folder has all of them. */
@@ -242,15 +223,14 @@ void verdicts_add(struct verdicts *verdicts, int claim, const struct evaluation 
         evaluations[0].verdict == CLAIM_UNDECIDED && strstr(evaluations[0].evidence, ": within the noise");
 }
 
-/* Of one paper (NULL: all) by one scheme; the corrected one counts only claims that name a scheme. Returns how many
-   there are. */
-static int count(const struct verdicts *verdicts, const char *paper, enum scheme scheme, int counts[CLAIM_VERDICTS])
+/* By one scheme; the corrected one counts only claims that name a scheme. Returns how many there are. */
+static int count(const struct verdicts *verdicts, enum scheme scheme, int counts[CLAIM_VERDICTS])
 {
     int total = 0;
     memset(counts, 0, CLAIM_VERDICTS * sizeof *counts);
     for (int k = 0; k < verdicts->claims->count; k++) {
         const struct claim *claim = &verdicts->claims->claims[k];
-        if (!verdicts->evaluated[k] || (paper && strcmp(claim->paper, paper) != 0) || (scheme && !claim->by_scheme))
+        if (!verdicts->evaluated[k] || (scheme && !claim->by_scheme))
             continue;
         counts[verdicts->of[k][scheme]]++;
         total++;
@@ -279,57 +259,11 @@ void verdicts_print(FILE *stream, const struct verdicts *verdicts)
     int counts[CLAIM_VERDICTS];
     fputs("\nVerdicts\n", stream);
     for (enum scheme scheme = 0; scheme < SCHEMES; scheme++) {
-        int total = count(verdicts, NULL, scheme, counts);
+        int total = count(verdicts, scheme, counts);
         fprintf(stream, "  %-10s", scheme_names[scheme]);
         for (int k = 0; k < CLAIM_VERDICTS; k++)
             fprintf(stream, "%s %d %s", k ? "," : "", counts[k], claim_verdict_names[k]);
         fprintf(stream, scheme ? " (of the %d that depend on LBF21's scheme).\n" : " (of %d).\n", total);
     }
     reasons_write(stream, verdicts);
-}
-
-static void row_write(FILE *stream, const char *title, const struct verdicts *verdicts, const char *paper,
-                      enum scheme scheme)
-{
-    int counts[CLAIM_VERDICTS], total = count(verdicts, paper, scheme, counts);
-    fprintf(stream, "| %s | %d |", title, total);
-    for (int k = 0; k < CLAIM_VERDICTS; k++)
-        fprintf(stream, " %d |", counts[k]);
-    fputc('\n', stream);
-}
-
-/* Is it the first claim of its paper? */
-static bool paper_begins(const struct claims *claims, int k)
-{
-    return k == 0 || strcmp(claims->claims[k].paper, claims->claims[k - 1].paper) != 0;
-}
-
-enum status verdicts_write(const char *path, const char *head, const struct verdicts *verdicts)
-{
-    const struct claims *claims = verdicts->claims;
-    struct text_file file;
-    enum status status = text_file_open(path, &file);
-    if (status != STATUS_OK)
-        return status;
-    fprintf(file.stream, "# Verdicts\n\nWritten by `./sasbench reproduce`: %s\n\n| | claims |", head);
-    for (int k = 0; k < CLAIM_VERDICTS; k++)
-        fprintf(file.stream, " %s |", claim_verdict_names[k]);
-    fputs("\n|---|---|---|---|---|---|---|\n", file.stream);
-    row_write(file.stream, "all, as printed", verdicts, NULL, SCHEME_PRINTED);
-    for (int k = 0; k < claims->count; k++)
-        if (paper_begins(claims, k))
-            row_write(file.stream, claims->claims[k].paper, verdicts, claims->claims[k].paper, SCHEME_PRINTED);
-    row_write(file.stream, "those that depend on LBF21's scheme, corrected", verdicts, NULL, SCHEME_CORRECTED);
-    fputc('\n', file.stream);
-    reasons_write(file.stream, verdicts);
-    fputs("\n| claim | statement | as printed | corrected |\n|---|---|---|---|\n", file.stream);
-    for (int k = 0; k < claims->count; k++)
-        if (verdicts->evaluated[k])
-            fprintf(file.stream, "| `%s` | %s | %s%s%s%.*s%s | %s |\n", claims->claims[k].id, claims->claims[k].claim,
-                    claim_verdict_names[verdicts->of[k][0]], verdicts->noisy[k] ? " (within the noise)" : "",
-                    *claims->claims[k].changed ? " (criterion changed " : "",
-                    (int)strcspn(claims->claims[k].changed, ":"), claims->claims[k].changed,
-                    *claims->claims[k].changed ? ")" : "",
-                    claims->claims[k].by_scheme ? claim_verdict_names[verdicts->of[k][SCHEME_CORRECTED]] : "");
-    return text_file_close(&file, STATUS_OK);
 }

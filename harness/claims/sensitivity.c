@@ -63,8 +63,6 @@ static enum status set_evaluate(const char *directory, const struct claims *clai
     return status;
 }
 
-/* ---- the table ---- */
-
 static bool flips(const struct set_verdicts *verdicts, int k, enum scheme scheme)
 {
     bool flipped = false;
@@ -73,100 +71,59 @@ static bool flips(const struct set_verdicts *verdicts, int k, enum scheme scheme
     return flipped;
 }
 
-static void row_write(FILE *stream, const struct claim *claim, enum scheme scheme, const struct set_verdicts *verdicts,
-                      int k)
-{
-    fprintf(stream, "| `%s`%s%s: %s | %s |", claim->id, claim->by_scheme ? ", " : "",
-            claim->by_scheme ? scheme_names[scheme] : "", claim->claim,
-            claim_verdict_names[verdicts->of[0][k][scheme]]);
-    for (int n = 1; assumption_sets[n].name; n++) {
-        bool same = verdicts->of[n][k][scheme] == verdicts->of[0][k][scheme];
-        const char *name = claim_verdict_names[verdicts->of[n][k][scheme]];
-        fprintf(stream, same ? " same |" : " **%s** |", name);
-    }
-    fputc('\n', stream);
-}
-
-static void steady_write(FILE *stream, const struct claims *claims, const struct set_verdicts *verdicts)
-{
-    for (enum claim_verdict verdict = 0; verdict < CLAIM_VERDICTS; verdict++) {
-        int count = 0;
-        for (int k = 0; k < claims->count; k++)
-            for (enum scheme scheme = 0; scheme < (claims->claims[k].by_scheme ? SCHEMES : 1); scheme++) {
-                if (!takes_part(&claims->claims[k]) || flips(verdicts, k, scheme)
-                    || verdicts->of[0][k][scheme] != verdict)
-                    continue;
-                if (count++ == 0)
-                    fprintf(stream, "\nThe same under all: %s\n", claim_verdict_names[verdict]);
-                fprintf(stream, "%s`%s`%s%s", count > 1 ? ", " : "\n", claims->claims[k].id,
-                        claims->claims[k].by_scheme ? " " : "",
-                        claims->claims[k].by_scheme ? scheme_names[scheme] : "");
-            }
-        fputs(count ? "\n" : "", stream);
-    }
-}
-
-/* How many verdicts take part, and how many of them flip. */
-static void flips_count(const struct claims *claims, const struct set_verdicts *verdicts, int *part, int *flipped)
-{
-    *part = *flipped = 0;
-    for (int k = 0; k < claims->count; k++)
-        for (enum scheme scheme = 0; scheme < (claims->claims[k].by_scheme ? SCHEMES : 1); scheme++)
-            if (takes_part(&claims->claims[k])) {
-                ++*part;
-                *flipped += flips(verdicts, k, scheme);
-            }
-}
-
-static enum status table_write(const char *directory, const struct claims *claims, const struct set_verdicts *verdicts)
+static enum status verdicts_write(const char *directory, const struct claims *claims,
+                                  const struct set_verdicts *verdicts, const struct measured *measured)
 {
     char path[4200];
     struct text_file file;
-    int part, flipped;
-    snprintf(path, sizeof path, "%s/sensitivity.md", directory);
+    int part = 0, flipped = 0;
+    snprintf(path, sizeof path, "%s/sensitivity.csv", directory);
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    flips_count(claims, verdicts, &part, &flipped);
-    fprintf(
-        file.stream,
-        "# Verdicts under other assumptions\n\nWritten by `./sasbench reproduce sensitivity`. Of %d verdicts on image "
-        "quality and phase %d change under one of the\nassumptions at least:\n\n| claim | %s |",
-        part, flipped, assumption_sets[0].title);
-    for (int n = 1; assumption_sets[n].name; n++)
-        fprintf(file.stream, " %s |", assumption_sets[n].title);
-    fputs("\n|---|", file.stream);
-    for (int n = 0; assumption_sets[n].name; n++)
-        fputs("---|", file.stream);
-    fputc('\n', file.stream);
+    reproduced_head(file.stream, "sensitivity", measured);
+    fputs("claim,scheme,assumption,verdict\n", file.stream);
     for (int k = 0; k < claims->count; k++)
-        for (enum scheme scheme = 0; scheme < (claims->claims[k].by_scheme ? SCHEMES : 1); scheme++)
-            if (takes_part(&claims->claims[k]) && flips(verdicts, k, scheme))
-                row_write(file.stream, &claims->claims[k], scheme, verdicts, k);
-    steady_write(file.stream, claims, verdicts);
+        for (enum scheme scheme = 0; scheme < (claims->claims[k].by_scheme ? SCHEMES : 1); scheme++) {
+            if (!takes_part(&claims->claims[k]))
+                continue;
+            part++;
+            flipped += flips(verdicts, k, scheme);
+            for (int n = 0; assumption_sets[n].name; n++)
+                csv_write_fields(file.stream,
+                                 (const char *const[]){claims->claims[k].id, scheme_names[scheme],
+                                                       assumption_sets[n].title,
+                                                       claim_verdict_names[verdicts->of[n][k][scheme]], NULL},
+                                 NULL, 0, true);
+        }
     status = text_file_close(&file, STATUS_OK);
     if (status == STATUS_OK)
         printf("\n%d verdicts, %d of them change. Results: %s.\n", part, flipped, path);
     return status;
 }
 
-enum status sensitivity_study(const char *directory, const struct claims *claims,
+enum status sensitivity_study(const char *directory, const char *untimed, const struct claims *claims,
                               enum status (*measure)(const char *directory, struct need *needs, int count))
 {
     static struct set_verdicts verdicts;
+    struct measured measured;
     enum status status = STATUS_OK;
-    char folder[4200];
-    snprintf(folder, sizeof folder, "%s/sensitivity", directory);
     for (int n = 0; assumption_sets[n].name && status == STATUS_OK; n++) {
         struct need needs[NEEDS_MAX];
         assumptions_choose(&assumption_sets[n]);
         printf("\n%s\n", assumption_sets[n].title);
-        status = measure(folder, needs, needs_collect(claims, &assumption_sets[n], needs));
+        status = measure(untimed, needs, needs_collect(claims, &assumption_sets[n], needs));
         if (status == STATUS_OK)
-            status = phases_write(folder);
+            status = phases_write(untimed);
         if (status == STATUS_OK)
-            status = set_evaluate(folder, claims, verdicts.of[n]);
+            status = set_evaluate(untimed, claims, verdicts.of[n]);
     }
     assumptions_choose(assumption_sets);
-    return status == STATUS_OK ? table_write(directory, claims, &verdicts) : status;
+    if (status != STATUS_OK)
+        return status;
+    status = measured_read(untimed, &measured);
+    if (status == STATUS_OK)
+        status = verdicts_write(directory, claims, &verdicts, &measured);
+    measured_free(&measured);
+    return status;
 }

@@ -5,6 +5,7 @@
 #include "command/task.h"
 #include "gate/ab.h"
 #include "gate/diff.h"
+#include "echoes/echo_data.h"
 #include "echoes/matfile.h"
 #include "metrics/metrics.h"
 
@@ -39,6 +40,9 @@ static enum status compare_images(const struct task *task)
         status = metrics_cover(reference, image->patch_count, image->patches);
     if (status == STATUS_INVALID && reference->patch_count > 0)
         status = status_set(STATUS_INVALID, "compare: %s does not fit %s: %s", names[0], names[1], status_message());
+    for (int k = 0; k < 2 && status == STATUS_OK; k++)
+        if (!image_is_finite(&files[k].image))
+            status = status_set(STATUS_INVALID, "compare: %s has pixels that are not finite", names[k]);
     if (status == STATUS_OK) {
         const struct error_metrics e = metrics_error(image, reference);
         const struct shift shift = metrics_shift(image, reference);
@@ -58,7 +62,7 @@ static enum status compare_images(const struct task *task)
 enum status command_compare(const struct task *task)
 {
     struct diff diff;
-    if (!task->ab && has_extension(task->names[0], ".mat"))
+    if (!task->ab && (has_extension(task->names[0], ".mat") || has_extension(task->names[0], ".npy")))
         return compare_images(task);
     if (task->output)
         return status_set(STATUS_INVALID, "compare: -o %s is for two image files", task->output);

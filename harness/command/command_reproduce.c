@@ -5,6 +5,10 @@
 
 enum status command_reproduce(const struct task *task)
 {
-    return papers_reproduce(task->names, task->name_count, task->output ? task->output : "results/reproduce",
-                            task->shard);
+    return papers_reproduce(&(struct reproduction){.ids = task->names,
+                                                   .count = task->name_count,
+                                                   .directory = task->output ? task->output : "results/reproduce",
+                                                   .shard = task->shard,
+                                                   .quick = task->quick,
+                                                   .docs = task->docs});
 }

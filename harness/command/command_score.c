@@ -139,9 +139,11 @@ enum status command_score(const struct task *task)
         return status;
     status = image_find(task, &scene, &file);
     if (status == STATUS_OK) {
-        status = metrics_cover(&file.image, scene.reference_count, scene.reference_patches);
+        status = scene.reference_count > 0 ? metrics_cover(&file.image, scene.reference_count, scene.reference_patches)
+                                           : metrics_cover(&file.image, scene.patch_count, scene.patches);
         if (status != STATUS_OK)
-            status = status_set(status, "score: %s does not fit %s: %s", task->names[0], scene.name, status_message());
+            status = status_set(status, "score: %s does not fit %s: %s (cure: %s--grid)", task->names[0], scene.name,
+                                status_message(), task->echoes ? "another " : "--echoes FILE.mat with a ");
         else if (!image_is_finite(&file.image))
             status = status_set(STATUS_INVALID, "score: %s has pixels that are not finite", task->names[0]);
     }

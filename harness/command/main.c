@@ -54,10 +54,10 @@ static const struct command commands[] = {
      "exit status 1 where an algorithm is refused",
      "aegL", 0, 1, command_check, .every = true},
     {"plan", "the fastest algorithm and settings within an error",
-     "(SCENE | --echoes FILE.mat [--grid GRID]) [--error E | --time S] [--memory BYTES] [-o FILE.csv] [--all]",
-     "choose the fastest algorithm and settings within an error, or the most exact within a time, and print error, "
-     "time, memory and the next of each family; exit status 1 where nothing fits",
-     "oegtETYL", 0, 1, command_plan, false},
+     "(SCENE | --echoes FILE.mat [--grid GRID]) [--error E | --time S] [--memory BYTES] [--nodes N] "
+     "[-o FILE.csv] [--all]",
+     "choose the fastest settings within an error, or the most exact within a time; exit status 1 where nothing fits",
+     "oegtETYDL", 0, 1, command_plan, false},
     {"scenes", "draw a random scene from a seed", "random --seed N [-o FILE.cfg]",
      "draw a scene from a seed, of any band, array and range", "oS", 1, 1, command_scenes, false},
     {"simulate", "write a scene's echoes", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate,
@@ -88,10 +88,9 @@ static const struct command commands[] = {
      "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0, command_baseline,
      false},
     {"merge", "join the results folders of shards", "DIR ... -o DIR",
-     "join the results folders of shards; a folder for each kind of machine, whose times are not compared", "o", 1,
-     INT_MAX, command_merge, false},
-    {"reproduce", "the papers' tables, figures and claims beside our numbers", "[ID ...] [-o DIR] [--shard I/N]",
-     "measure the papers' tables, figures and claims again, beside the printed numbers", "otX", 0, INT_MAX,
+     "join the results folders of shards; a folder for each kind of machine", "o", 1, INT_MAX, command_merge, false},
+    {"reproduce", "the papers' tables and claims beside ours", "[ID ...] [-o DIR] [--quick | --docs | --shard I/N]",
+     "measure the papers' tables, figures and claims again, beside the printed numbers", "otXQG", 0, INT_MAX,
      command_reproduce, true},
     {"sweep", "error against run time, each algorithm over its settings",
      "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [--precision float|double] [-o DIR] "
@@ -135,15 +134,17 @@ static const struct named {
     {'E', "error", "E", "of the image after one gain (L2), 1e-3 unless given", IN_TASK(error)},
     {'T', "time", "S", "in place of --error: the least error within a run time", IN_TASK(time)},
     {'Y', "memory", "BYTES", "most memory of the image's process, as 2G; `plan`: 4G", IN_TASK(memory)},
+    {'D', "nodes", "N", "the time on so many machines such as this one", IN_TASK(nodes)},
     {'S', "seed", "N", "a whole number from 0 to 1e15", IN_TASK(seed)},
     {'N', "name", "NAME", "of the image's program; the file's name unless given", IN_TASK(name)},
     {'K', "seconds", "S", "run time of that program; the row marks it as stated", IN_TASK(seconds)},
     {'A', "at", "FILE.csv", "points: columns d, r, F, f, fc, v, c", IN_TASK(at)},
     {'B', "ab", NULL, "run two programs side by side and compare their times", IN_TASK(ab)},
-    {'Q', "quick", NULL, "one scene of each family, in two rounding modes", IN_TASK(quick)},
+    {'Q', "quick", NULL, "less: one scene of each family (`stability`), or no times (`reproduce`)", IN_TASK(quick)},
     {'L', "all", NULL, "print every line, not the answer alone", IN_TASK(all)},
     {'F', "flops", NULL, "count FLOPs by the papers' formulas as well", IN_TASK(flops)},
     {'W', "verify", NULL, "measure the image's error on some of its pixels", IN_TASK(verify)},
+    {'G', "docs", NULL, "write one page a paper into docs/papers", IN_TASK(docs)},
     {'M', "markdown", "FILE", "the findings as a comment for a CI", IN_TASK(markdown)},
     {'J', "json", "FILE", "the findings for trackers of benchmarks", IN_TASK(json)},
     {'h', "help", NULL, NULL, 0},
@@ -439,7 +440,7 @@ int main(int argc, char **argv)
     for (int k = 0; k < task.spec_count; k++)
         spec_free(&task.specs[k]);
     free(task.specs);
-    if (status != STATUS_OK && (task.shard || ranks_count() > 1 || ranks_first()))
+    if (status != STATUS_OK && (task.shard || ranks_refuse()))
         shown_note(status_message());
     const int code = status == STATUS_OK ? 0 : status == STATUS_FAILED ? 1 : 2;
     if (ranks_count() == 1)

@@ -11,8 +11,8 @@ struct task {
     const char *const *names; /* [name_count] arguments without an option: scenes, an algorithm */
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *time, *memory,
-        *seed, *name, *seconds, *tile, *threads, *shard, *timeout;
-    bool ab, quick, all, flops, verify;
+        *nodes, *seed, *name, *seconds, *tile, *threads, *shard, *timeout;
+    bool ab, quick, all, flops, verify, docs;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
 };

@@ -15,8 +15,8 @@ static int parts_of(int whole, int part)
     return (whole + part - 1) / part;
 }
 
-/* The number of the farthest tile of the stretch of columns that is next to the middle of the track. */
-static int dearest(const struct acquisition *a, const struct tiles *tiles)
+/* The farthest tile of the stretch of columns that is next to the middle of the track. */
+struct pixel_window tile_dearest(const struct acquisition *a, const struct tiles *tiles)
 {
     const int deep = parts_of(tiles->grid.r_count, tiles->rows);
     const struct vector middle = a->tx[a->pings / 2];
@@ -31,26 +31,31 @@ static int dearest(const struct acquisition *a, const struct tiles *tiles)
             nearest = n;
         }
     }
-    return nearest;
+    return tiles_window(tiles, nearest);
 }
 
 enum status tile_cost(const struct spec *spec, const struct scene *scene, const struct tiles *tiles,
                       struct tile_cost *cost)
 {
     const struct acquisition *a = &scene->acquisition;
-    const struct pixel_window window = tiles_window(tiles, dearest(a, tiles));
+    const struct pixel_window window = tile_dearest(a, tiles);
     struct problem problem = problem_make(a, 1, &tiles->grid, spec->precision);
     struct imaging imaging;
     bool *read = calloc((size_t)a->pings, sizeof *read);
     problem.window = &window;
+    problem.estimate = true;
     enum status status =
         read ? imaging_open(spec, &problem, &imaging) : status_set(STATUS_FAILED, "out of memory for pings");
     if (status == STATUS_OK) {
         const struct work work = imaging.algorithm->work(imaging.plan);
         imaging_reads(&imaging, &problem, read);
-        *cost = (struct tile_cost){.flops = work.flops};
+        *cost = (struct tile_cost){.flops = work.flops, .first = -1};
         for (int p = 0; p < a->pings; p++)
-            cost->pings += read[p];
+            if (read[p]) {
+                cost->pings++;
+                cost->last = p;
+                cost->first = cost->first < 0 ? p : cost->first;
+            }
         cost->bytes = process_tile_bytes(&problem, work.bytes, cost->pings);
         imaging_close(&imaging);
     }
@@ -113,7 +118,7 @@ enum status tile_choose(const struct spec *spec, const struct scene *scene, doub
     }
     if (status == STATUS_OK && reads == INFINITY)
         status = status_set(STATUS_UNSUPPORTED,
-                            "image: --memory: no tile fits into %.4g MB, not even one of 1x%d pixels (cure: more "
+                            "--memory: no tile fits into %.4g MB, not even one of 1x%d pixels (cure: more "
                             "memory, fewer receivers or samples)",
                             bytes / 1e6, tried.rows);
     return status;

@@ -10,8 +10,12 @@
 struct tile_cost {
     double bytes; /* of the process with one thread */
     double flops; /* of the tile */
-    int pings;    /* that it reads */
+    int pings;    /* that it reads, */
+    int first;    /* from this one */
+    int last;     /* to this one */
 };
+/* Its pixels. */
+struct pixel_window tile_dearest(const struct acquisition *a, const struct tiles *tiles);
 /* By a plan of that tile, of the size tiles->columns x tiles->rows. Errors: those of the plan. */
 enum status tile_cost(const struct spec *spec, const struct scene *scene, const struct tiles *tiles,
                       struct tile_cost *cost);

@@ -241,7 +241,7 @@ int conformance_run(const struct spec *spec, FILE *stream, const struct conforma
             run_apart(&c, check, check->each ? &settings[n] : c.usual);
         c.usual = &settings[c.tally->monostatic ? MONOSTATIC : RAW];
     }
-    promise(&c, "all scenes", c.tally->accepted > 0, "%d of %d are imaged", c.tally->accepted, SETTINGS);
+    promise(&c, "all scenes", c.tally->accepted > 0, "%d of %d are accepted", c.tally->accepted, SETTINGS);
     const int broken = c.tally->broken;
     fprintf(stream, "%s: %d of %d promises are broken\n", c.algorithm->name, broken, broken + c.tally->kept);
     munmap(c.tally, sizeof *c.tally);

@@ -120,10 +120,12 @@ static enum status axis_read(const char *path, const struct wanted *wanted, cons
     *step = last > 0 ? (creal(variable->values[last]) - *first) / (double)last : 1;
     *count = (int)expected;
     for (size_t i = 0; i < expected; i++) {
-        double deviation = creal(variable->values[i]) - (*first + (double)i * *step);
-        if (!(*step > 0) || !(fabs(deviation) <= 1e-6 * *step)) {
-            return status_set(STATUS_INVALID, "%s: variable `%s` has %g at place %zu; %s is needed", path, wanted->name,
-                              creal(variable->values[i]), i + 1, wanted->accepted);
+        const double value = creal(variable->values[i]), even = *first + (double)i * *step;
+        if (!(*step > 0) || !(fabs(value - even) <= 1e-6 * *step)) {
+            return status_set(STATUS_INVALID,
+                              "%s: variable `%s` has %.9g at place %zu, %.9g would be even; %s%s is needed", path,
+                              wanted->name, value, i + 1, even, wanted->accepted,
+                              variable->is_single ? " of class double (this one is single)" : "");
         }
     }
     return STATUS_OK;

@@ -4,5 +4,6 @@
 
 #define SCENE_DIRECTORY SASBENCH_ROOT "/scenes"
 #define PLOT_DIRECTORY  SASBENCH_ROOT "/plots"
+#define PAGES_DIRECTORY SASBENCH_ROOT "/docs/papers" /* that `reproduce --docs` writes */
 
 #endif

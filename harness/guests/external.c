@@ -127,7 +127,7 @@ static enum status hear(struct external_plan *plan, const char *during, char lin
             memcpy(line, plan->heard, length);
             line[length] = '\0';
             plan->heard_count -= length + 1;
-            memmove(plan->heard, end + 1, plan->heard_count);
+            memmove(plan->heard, end + 1, plan->heard_count + 1);
             if (strlen(line) == length)
                 return STATUS_OK;
             return fail(plan, "said a line with a zero byte, '%.60s', during %s", line, during);
@@ -251,8 +251,14 @@ static enum status execute_ask(struct external_plan *plan, const struct echoes *
 {
     char line[LINE_MOST + 1];
     struct pollfd early = {plan->keeper.from, POLLIN, 0};
-    if (plan->heard_count > 0 || (poll(&early, 1, 0) > 0 && early.revents & POLLIN))
-        return fail(plan, "said '%.60s' without being asked", plan->heard);
+    if (plan->heard_count == 0 && poll(&early, 1, 0) > 0 && early.revents & POLLIN) {
+        const ssize_t found = read(plan->keeper.from, plan->heard, LINE_MOST);
+        plan->heard_count = found > 0 ? (size_t)found : 0;
+        plan->heard[plan->heard_count] = '\0';
+    }
+    if (plan->heard_count > 0)
+        return fail(plan, "said '%.*s' without being asked", (int)fmin((double)strcspn(plan->heard, "\n"), 60),
+                    plan->heard);
     if (exchange_give(&plan->exchange, echoes->samples) != STATUS_OK)
         return fail(plan, "%s", status_message());
     const double begin = seconds_now();

@@ -147,6 +147,12 @@ static void __attribute__((noreturn)) stop(pid_t program, const char *folder)
     _exit(0);
 }
 
+void signals_reset(void)
+{
+    for (int k = 1; k < NSIG; k++)
+        signal(k, SIG_DFL);
+}
+
 static void __attribute__((noreturn)) program_run(char *const *words, const char *folder, int threads, pid_t parent)
 {
     static const char *const limits[] = {"OMP_NUM_THREADS",     "OPENBLAS_NUM_THREADS",   "MKL_NUM_THREADS",
@@ -159,8 +165,7 @@ static void __attribute__((noreturn)) program_run(char *const *words, const char
         setenv(limits[k], number, 1);
     const int log = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
     setpgid(0, 0);
-    for (int k = 1; k < NSIG; k++)
-        signal(k, SIG_DFL);
+    signals_reset();
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, NULL);
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent && dup2(log, STDOUT_FILENO) >= 0

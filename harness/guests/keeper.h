@@ -18,6 +18,9 @@ struct keeper {
     struct keeper *next;
 };
 
+/* In a child, before what may crash: signals end it, in place of running a handler of ours or of a sanitizer. */
+void signals_reset(void);
+
 /* Start the program in the current folder, its output to FOLDER/log, which exists, with so many threads for libraries
    that ask OMP_NUM_THREADS and its like. A program that cannot be run has ended. Errors: STATUS_FAILED. */
 enum status keeper_start(char *const *words, const char *folder, int threads, struct keeper *keeper);

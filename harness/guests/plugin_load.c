@@ -6,10 +6,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "guests/guests.h"
+#include "guests/keeper.h"
 #include "guests/plugin.h"
 
 static bool name_taken(const struct plugin *plugin, uint32_t count, const char *name)
@@ -164,29 +166,35 @@ static enum status object_take(struct plugin *plugin, const char *path, void **o
                       plugin->name);
 }
 
-/* Load it in a child first: half of an object, a constructor or a wild pointer may end what loads it. */
+/* Load it in a child first: half of an object, a constructor or a wild pointer may end or stop what loads it. */
 static enum status load_try(struct plugin *plugin, const char *path)
 {
-    enum { RETURNED = 83 };
     int state = 0;
     void *object;
-    const pid_t child = fork();
+    bool *returned = mmap(NULL, sizeof *returned, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    const pid_t child = returned == MAP_FAILED ? -1 : fork();
     if (child == 0) {
-        for (int k = 1; k < SIGRTMIN; k++) /* no sanitizer's handler may answer in the object's place */
-            signal(k, SIG_DFL);
+        signals_reset();
         object_take(plugin, path, &object);
-        _exit(RETURNED);
+        *returned = true;
+        _exit(0);
     }
-    while (child > 0 && waitpid(child, &state, 0) < 0)
-        if (errno != EINTR)
-            return STATUS_OK;
-    if (child > 0 && WIFSIGNALED(state))
-        return status_set(STATUS_INVALID, "%s: cannot be loaded: this ends by signal %d (%s)", plugin->name,
-                          WTERMSIG(state), strsignal(WTERMSIG(state)));
-    if (child > 0 && WEXITSTATUS(state) != RETURNED)
+    while (child > 0 && waitpid(child, &state, WUNTRACED) < 0 && errno == EINTR)
+        ;
+    if (child > 0 && WIFSTOPPED(state)) {
+        kill(child, SIGKILL);
+        waitpid(child, NULL, 0);
+    }
+    const bool whole = child < 0 || *returned;
+    if (returned != MAP_FAILED)
+        munmap(returned, sizeof *returned);
+    const int number = WIFSTOPPED(state) ? WSTOPSIG(state) : WTERMSIG(state);
+    if (!whole && WIFEXITED(state))
         return status_set(STATUS_INVALID, "%s: cannot be loaded: this ends the program with exit status %d",
                           plugin->name, WEXITSTATUS(state));
-    return STATUS_OK;
+    return whole ? STATUS_OK
+                 : status_set(STATUS_INVALID, "%s: cannot be loaded: this %s by signal %d (%s)", plugin->name,
+                              WIFSTOPPED(state) ? "stops" : "ends", number, strsignal(number));
 }
 
 /* dlopen takes a name without a slash for one of the system's libraries. */

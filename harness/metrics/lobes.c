@@ -81,7 +81,7 @@ static double islr_of_lobe(const double *power, int count, double left, double r
     return 10 * log10(outside / power_integral(power, left, right));
 }
 
-/* The slice at the image's own pixels, target on a pixel: main lobe = the highest pixel +-2, plain sums. */
+/* The slice at the pixels' spacing, with a sample on the target: main lobe = the highest pixel +-2, plain sums. */
 static void pixel_measure(const double *power, int count, double target, double stride, double left, double right,
                           struct slice_metrics *metrics)
 {

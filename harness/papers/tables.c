@@ -225,6 +225,11 @@ static bool table_is_planned(const char *id)
     return planned;
 }
 
+bool table_is_full_size(const struct paper_table *table)
+{
+    return table->base || table_is_planned(table->id);
+}
+
 enum status tables_evaluate(struct measured *measured, const bool *asked, struct reproduced **line, int *count)
 {
     static const struct {

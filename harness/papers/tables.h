@@ -18,6 +18,9 @@ struct reproduced {
    are evaluated only where `asked` ([place in paper_tables]; NULL: all). Errors: STATUS_FAILED without memory. */
 enum status tables_evaluate(struct measured *measured, const bool *asked, struct reproduced **lines, int *count);
 
+/* Has it times, or numbers from plans, which may be large? */
+bool table_is_full_size(const struct paper_table *table);
+
 /* Is it a figure of the phase study? */
 bool table_has_phases(const char *id);
 

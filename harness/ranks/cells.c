@@ -45,7 +45,7 @@ static double flops_of(const struct scene *scene, const struct spec *spec)
         f = plain;
     if (!f.sums_pairs)
         return f.migration_flops;
-    return f.pair_flops * (f.image_cost > 0 ? f.image_pairs : pairs_count(&problem)) + f.image_flops + f.record_flops
+    return f.pair_flops * (f.image_cost > 0 ? f.image_pairs : pairs_estimate(&problem)) + f.image_flops + f.record_flops
            + f.kernel_flops;
 }
 
@@ -67,7 +67,7 @@ static enum status scene_add(struct cells *cells, const struct scene *scene, int
     const double simulation = PAIR * points * a->pings * a->receivers * a->samples;
     *index = cells->scene_count++;
     scenes[*index] =
-        (struct cell_scene){name, 0, (EXACT * pairs_count(&exact) + (scene->recorded ? 0 : simulation)) / TIMES};
+        (struct cell_scene){name, 0, (EXACT * pairs_estimate(&exact) + (scene->recorded ? 0 : simulation)) / TIMES};
     return STATUS_OK;
 }
 

@@ -56,9 +56,12 @@ int ranks_started(void)
     return number_of("OMPI_COMM_WORLD_SIZE", getenv("PMIX_RANK") ? number_of("SLURM_STEP_NUM_TASKS", 1) : 1);
 }
 
-bool ranks_first(void)
+bool ranks_refuse(void)
 {
-    return ranks_started() == 1 || number_of("OMPI_COMM_WORLD_RANK", number_of("PMIX_RANK", 0)) == 0;
+    enum { FIRST_S = 3 };
+    if (ranks.count == 1 && ranks_started() > 1 && number_of("OMPI_COMM_WORLD_RANK", number_of("PMIX_RANK", 0)) > 0)
+        sleep(FIRST_S);
+    return true;
 }
 
 int ranks_number(void)

@@ -106,6 +106,7 @@ static enum status recording_open(const char *path, struct scene *scene)
     enum status status = echo_file_open(path, a, &recording->exponent);
     if (status != STATUS_OK)
         return status;
+    recording->pings = a->pings;
     const size_t each = (size_t)a->receivers * (size_t)a->samples,
                  size = size_product((size_t)a->pings, each, sizeof(double complex), 1);
     bool *read = calloc((size_t)a->pings, sizeof *read);
@@ -210,8 +211,38 @@ enum status scene_from_recording(const char *path, const struct grid *grid, cons
     return from_file(path, grid, place, false, out);
 }
 
+/* The scene's pings of a file. */
+static enum status file_echoes(const struct scene *scene, struct echoes *echoes)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const struct recording_file *file = &scene->recording;
+    const size_t each = (size_t)a->receivers * (size_t)a->samples, pings = (size_t)file->pings;
+    const size_t size = size_product(pings, each, sizeof(double complex), 1);
+    double complex *samples = size > 0 ? memory_sparse(size) : NULL;
+    bool *read = calloc(pings, sizeof *read);
+    double largest = 0;
+    enum status status = STATUS_OK;
+    if (!samples || !read)
+        status = status_set(STATUS_FAILED, "%s: out of memory for its echoes", file->path);
+    for (int p = 0; p < a->pings && status == STATUS_OK; p++)
+        read[file->first + p] = true;
+    if (status == STATUS_OK)
+        status = echo_file_read_pings(
+            file->path, a,
+            &(struct pings){file->pings, read, PRECISION_DOUBLE, file->exponent, each, samples, &largest});
+    if (status == STATUS_OK) {
+        const struct echoes part = {a, PRECISION_DOUBLE, samples + (size_t)file->first * each, 0};
+        status = echoes_convert(&part, PRECISION_DOUBLE, echoes);
+    }
+    memory_sparse_free(samples);
+    free(read);
+    return status;
+}
+
 enum status scene_echoes(const struct scene *scene, struct echoes *echoes)
 {
+    if (scene->recording.path)
+        return file_echoes(scene, echoes);
     if (!scene->recorded) {
         return scene_simulate(scene, echoes);
     }

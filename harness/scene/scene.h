@@ -27,7 +27,9 @@ struct beam {
 
 /* Samples that stay in their file. */
 struct recording_file {
-    char *path;     /* NULL: they do not */
+    char *path; /* NULL: they do not */
+    int pings;  /* in the file; those of the scene begin at `first` */
+    int first;
     int exponent;   /* of the power of two that they are divided by */
     double largest; /* magnitude of a part, of some pings */
 };

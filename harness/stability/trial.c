@@ -5,7 +5,6 @@
 #include <fenv.h>
 #include <math.h>
 #include <omp.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,14 +14,13 @@
 #include <unistd.h>
 
 #include "echoes/echo_data.h"
+#include "guests/keeper.h"
 #include "imaging/imaging.h"
 #include "scene/simulate.h"
 #include "stability/method.h"
 
 static const int modes[TRIAL_MODES] = {FE_TONEAREST, FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO};
 const char *const trial_mode_names[TRIAL_MODES] = {"nearest", "downward", "upward", "zero"};
-
-static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 enum { PATIENCE_S = 300 }; /* of one process */
 
@@ -152,8 +150,7 @@ static enum status process_run(struct trial *trial, enum status (*work)(struct t
     if (child < 0)
         return status_set(STATUS_FAILED, "%s: no process can be started", trial->scene->name);
     if (child == 0) {
-        for (size_t k = 0; k < sizeof crashes / sizeof *crashes; k++)
-            signal(crashes[k], SIG_DFL); /* reset the parent's handlers */
+        signals_reset();
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         alarm(PATIENCE_S);
         trial->note->status = work(trial, argument);

@@ -295,11 +295,16 @@ void grid_clip_records(const struct tree *tree, const struct subaperture *part, 
         for (int k = 0; k < polar->lines; k++) {
             const double s = (polar->line_first + k) * step->sine;
             const struct vector first = place_at(tree, part, view, near, s), last = place_at(tree, part, view, far, s);
-            for (int p = part->ping; p < part->ping + part->pings; p++)
+            for (int p = part->ping; p < part->ping + part->pings; p++) {
+                double least = INFINITY, most = 0;
                 for (int m = 0; m < a->receivers; m++) {
-                    before = fmax(before, a->t0[p] + slack - delay_of(a, p, m, first));
-                    behind = fmax(behind, delay_of(a, p, m, last) - (a->t0[p] + length - slack));
+                    const double early = delay_of(a, p, m, first), late = delay_of(a, p, m, last);
+                    least = early < least ? early : least;
+                    most = late > most ? late : most;
                 }
+                before = fmax(before, a->t0[p] + slack - least);
+                behind = fmax(behind, most - (a->t0[p] + length - slack));
+            }
         }
         if (before == 0 && behind == 0)
             return;

@@ -184,24 +184,30 @@ static void level_cover(struct tree *tree, int level, struct sector *sectors)
 /* The available extent of the grids, their memory, and the places of each level. */
 static void level_clip(struct tree *tree, int level)
 {
-    for (int n = tree->first[level]; n < tree->first[level + 1]; n++) {
+    const int first = tree->first[level], end = tree->first[level + 1];
+#pragma omp parallel for schedule(dynamic)
+    for (int n = first; n < end; n++) {
+        struct subaperture *part = &tree->subapertures[n];
+        for (int v = 0; v < tree->views; v++)
+            if (level == 0)
+                grid_clip_records(tree, part, v, &part->polars[v]);
+            else
+                grid_clip_parts(tree, part, v, &part->polars[v]);
+    }
+    for (int n = first; n < end; n++) {
         struct subaperture *part = &tree->subapertures[n];
         for (int v = 0; v < tree->views; v++) {
             struct polar *polar = &part->polars[v];
-            if (level == 0)
-                grid_clip_records(tree, part, v, polar);
-            else
-                grid_clip_parts(tree, part, v, polar);
             polar->offset = part->values;
             part->values += (size_t)polar->lines * 2 * polar_pitch(polar);
             struct polar_step *step = polar_step(tree, level, v);
-            const int end = polar->place_first + polar->places;
+            const int behind = polar->place_first + polar->places;
             if (polar->lines > 0 && (step->count == 0 || polar->place_first < step->place_first)) {
                 step->count += step->count == 0 ? 0 : step->place_first - polar->place_first;
                 step->place_first = polar->place_first;
             }
-            if (polar->lines > 0 && end - step->place_first > step->count)
-                step->count = end - step->place_first;
+            if (polar->lines > 0 && behind - step->place_first > step->count)
+                step->count = behind - step->place_first;
         }
     }
 }

@@ -5,6 +5,8 @@
 
 #include "backprojection/pairs/turned.h"
 
+static const double GOLDEN = 0.618; /* section */
+
 /* m: the largest distance of a ping's receivers from its transmitter. */
 static double receivers_apart(const struct acquisition *a, int ping)
 {
@@ -67,10 +69,53 @@ static int common_divisor(int a, int b)
 /* A step through `count` lines, by the golden section, that visits each line once, and soon comes near any. */
 static int stride_of(int count)
 {
-    int stride = (int)(0.618 * count) + 1;
+    int stride = (int)(GOLDEN * count) + 1;
     while (common_divisor(stride, count) > 1)
         stride++;
     return stride;
+}
+
+/* The extent of a grid's pixels seen from a ping: along its normal, and beside it. */
+struct seen {
+    double nearest, along, beside; /* m; the least along the normal, on either side, and the most */
+};
+
+/* Distances along the normal are linear, those beside it convex: the corners bound both. */
+static struct seen grid_seen(const struct grid *grid, struct vector tx, struct vector normal)
+{
+    struct seen seen = {0, 0, 0};
+    double ahead = INFINITY, behind = INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double x = grid->x_first + (k % 2 ? (grid->x_count - 1) * grid->x_step : 0) - tx.x;
+        const double r = grid->r_first + (k / 2 ? (grid->r_count - 1) * grid->r_step : 0) - tx.y;
+        const double along = x * normal.x + r * normal.y - tx.z * normal.z;
+        ahead = fmin(ahead, along);
+        behind = fmin(behind, -along);
+        seen.along = fmax(seen.along, fabs(along));
+        seen.beside = fmax(seen.beside, sqrt(fmax(0, x * x + r * r + tx.z * tx.z - along * along)));
+    }
+    seen.nearest = fmax(0, fmax(ahead, behind));
+    return seen;
+}
+
+/* m: the most along the normal inside an aperture, of pixels up to `beside` m off it. */
+static double aperture_edge(const struct acquisition *a, double beside)
+{
+    const double limit = a->aperture_limit;
+    return limit < 1 ? beside * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
+}
+
+/* May any pixel lie inside a ping's aperture and records? Inside the aperture a pixel is at least the distance along
+   the normal over the limit away. */
+static bool grid_reached(const struct acquisition *a, int ping, double apart, const struct grid *grid)
+{
+    const struct vector v = a->velocity[ping];
+    const struct seen seen = grid_seen(grid, a->tx[ping], acquisition_normal(a, ping));
+    const double near = seen.nearest > 0 ? seen.nearest / fmin(a->aperture_limit, 1) : 0;
+    const double speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    const struct delay_bounds delays = {(2 * near - apart) / (a->sound_speed + speed), INFINITY};
+    return !(seen.nearest > (1 + 1e-6) * aperture_edge(a, seen.beside) + 1e-9 * seen.along)
+           && record_reached(a, ping, delays);
 }
 
 /* Each line once, the last one first: along x the aperture widens with the range, along r a ping sees only some
@@ -82,6 +127,8 @@ static bool ping_met(const struct problem *problem, int ping)
     const double apart = receivers_apart(a, ping);
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *grid = &problem->patches[k];
+        if (!grid_reached(a, ping, apart, grid))
+            continue;
         const bool along_x = grid->x_count > grid->r_count;
         const int lines = grid_line_count(grid, along_x), stride = stride_of(lines);
         for (int left = lines, n = lines - 1; left > 0; left--, n = (int)(((long long)n + stride) % lines)) {
@@ -112,24 +159,6 @@ int pings_met(const struct problem *problem, bool *met)
     return count;
 }
 
-/* The extent of a grid's pixels seen from a ping: along its normal, and beside it. */
-struct seen {
-    double along, beside; /* m, the most */
-};
-
-static struct seen grid_seen(const struct grid *grid, struct vector tx, struct vector normal)
-{
-    struct seen seen = {0, 0};
-    for (int k = 0; k < 4; k++) {
-        const double x = grid->x_first + (k % 2 ? (grid->x_count - 1) * grid->x_step : 0) - tx.x;
-        const double r = grid->r_first + (k / 2 ? (grid->r_count - 1) * grid->r_step : 0) - tx.y;
-        const double along = x * normal.x + r * normal.y - tx.z * normal.z;
-        seen.along = fmax(seen.along, fabs(along));
-        seen.beside = fmax(seen.beside, sqrt(fmax(0, x * x + r * r + tx.z * tx.z - along * along)));
-    }
-    return seen;
-}
-
 /* m: the least distance of a grid, with pixels up to `beside` m off, from `at`, which may be displaced by `away` along
    each axis. */
 static double grid_nearest(const struct grid *grid, struct vector at, struct vector away, double beside)
@@ -147,11 +176,11 @@ static double grid_nearest(const struct grid *grid, struct vector at, struct vec
 static struct delay_bounds ping_delays(const struct acquisition *a, int ping, const struct grid *grid, double beside)
 {
     const struct vector tx = a->tx[ping], v = a->velocity[ping], n = acquisition_normal(a, ping);
-    const double longest = fmax(0, a->t0[ping] + (a->samples - 1) / a->fs), limit = a->aperture_limit;
+    const double longest = fmax(0, a->t0[ping] + (a->samples - 1) / a->fs);
     const struct vector way = {v.x * longest, v.y * longest, v.z * longest}, still = {0, 0, 0};
     const struct seen seen = grid_seen(grid, tx, n);
-    const double edge = limit < 1 ? seen.beside * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
-    const double along = fmin(seen.along, edge) + beside, out = grid_nearest(grid, tx, still, beside);
+    const double along = fmin(seen.along, aperture_edge(a, seen.beside)) + beside;
+    const double out = grid_nearest(grid, tx, still, beside);
     double least = INFINITY, most = 0;
     for (int m = 0; m < a->receivers; m++) {
         const struct vector rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
@@ -238,23 +267,32 @@ static double count_time(const struct acquisition *a, const struct grid *grid, b
     return lines * (1 + search * a->receivers * searched / tried);
 }
 
-/* Pairs of a grid along x and r. */
-static double grid_pairs(const struct acquisition *a, const struct grid *grid)
+/* Pairs of a grid along x and r, in about the time of `most` lines' apertures: from all lines, or with each ping from
+   some, which change from ping to ping. */
+static double grid_pairs(const struct acquisition *a, const struct grid *grid, double most)
 {
-    const bool along_x = count_time(a, grid, true) <= count_time(a, grid, false);
+    const double rows = count_time(a, grid, true), columns = count_time(a, grid, false);
+    const bool along_x = rows <= columns;
+    const int lines = grid_line_count(grid, along_x);
+    const int step = (int)fmax(1, fmin(lines, ceil(a->pings * fmin(rows, columns) / most)));
     double pairs = 0;
 #pragma omp parallel for schedule(dynamic) reduction(+ : pairs)
     for (int p = 0; p < a->pings; p++) {
         const double apart = receivers_apart(a, p);
-        for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) {
+        if (!grid_reached(a, p, apart, grid))
+            continue;
+        const int first = (int)(fmod(GOLDEN * p, 1) * step), visited = (lines - first + step - 1) / step;
+        double counted = 0;
+        for (int n = first; n < lines; n += step) {
             const struct pixel_line line = grid_line(grid, along_x, n);
-            pairs += line_pairs(a, p, apart, &line); /* whole numbers below 2^53: the order does not matter */
+            counted += line_pairs(a, p, apart, &line);
         }
+        pairs += rint(counted / visited * lines); /* whole numbers below 2^53: the order does not matter */
     }
     return pairs;
 }
 
-double pairs_count(const struct problem *problem)
+static double patches_pairs(const struct problem *problem, double most)
 {
     double pairs = 0;
     for (int k = 0; k < problem->patch_count; k++) {
@@ -263,10 +301,21 @@ double pairs_count(const struct problem *problem)
         patch.patch_count = 1;
         patch.patches = &problem->patches[k];
         const bool fits = problem_turn_back(&patch, &turned, NULL) == STATUS_OK;
-        pairs += fits ? grid_pairs(patch.acquisition, patch.patches) : NAN;
+        pairs += fits ? grid_pairs(patch.acquisition, patch.patches, most) : NAN;
         turned_free(&turned);
     }
     return pairs;
+}
+
+double pairs_count(const struct problem *problem)
+{
+    return problem->estimate ? pairs_estimate(problem) : patches_pairs(problem, INFINITY);
+}
+
+double pairs_estimate(const struct problem *problem)
+{
+    static const double most = 1e6; /* lines' apertures: a fraction of a second */
+    return patches_pairs(problem, most / problem->patch_count);
 }
 
 double problem_pixels(const struct problem *problem)

@@ -165,6 +165,30 @@ static void patches_count_in_their_own_axes(void **state)
     acquisition_free(&a);
 }
 
+/* Of a large problem some lines are counted, of a small one all: records that cut, grids turned, high and wide. */
+static void estimates_are_close(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        struct random random = random_seed(seed, 9);
+        struct acquisition a;
+        const bool large = seed % 3;
+        make(&a, large ? 150 : 9, 8, 500 + (int)(600 * random_uniform(&random)), 0.1, 2);
+        a.aperture_limit = seed % 4 ? 0.1 + 0.7 * random_uniform(&random) : 1;
+        const int count = large ? 900 : 30;
+        const struct grid grid = {-8, 16. / count, count, 4, 14. / count, count, seed % 2 ? 0.3 : 0};
+        const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
+        const double pairs = pairs_count(&problem), estimate = pairs_estimate(&problem);
+        if (!large)
+            assert_true(estimate == pairs && pairs > 0);
+        worst = worse_of(worst, fabs(estimate / pairs - 1));
+        acquisition_free(&a);
+    }
+    print_message("estimated to %.1e\n", worst);
+    assert_true(worst > 0 && worst < 0.02);
+}
+
 /* Pixels on the transmitters, in coordinates that double holds exactly or does not: both engines sum the same pairs. */
 static void engines_agree_on_the_track(void **state)
 {
@@ -228,6 +252,7 @@ int main(void)
         cmocka_unit_test(spans_hold_the_cone),        cmocka_unit_test(spans_hold_oblique_cones),
         cmocka_unit_test(limits_count_from_the_axis), cmocka_unit_test(patches_count_in_their_own_axes),
         cmocka_unit_test(engines_agree_on_the_track), cmocka_unit_test(plans_do_not_count),
+        cmocka_unit_test(estimates_are_close),
     };
     return cmocka_run_group_tests_name("pairs", tests, NULL, NULL);
 }

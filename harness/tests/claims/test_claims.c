@@ -357,43 +357,6 @@ static void failures_decide_nothing(void **state)
     }
 }
 
-/* The page of verdicts counts by scheme and paper, and lists every claim. */
-static void verdicts_are_counted(void **state)
-{
-    (void)state;
-    static struct verdicts verdicts;
-    struct claims claims;
-    int by_scheme = 0;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
-    verdicts.claims = &claims;
-    for (int k = 0; k < claims.count; k++) {
-        struct evaluation evaluations[SCHEMES] = {{.verdict = k < 3 ? CLAIM_UNDECIDED : CLAIM_HOLDS},
-                                                  {CLAIM_FAILS, ""}};
-        snprintf(evaluations[0].evidence, sizeof evaluations[0].evidence, k == 1 ? "1 above 1: within the noise" : "");
-        verdicts_add(&verdicts, k, evaluations);
-        by_scheme += claims.claims[k].by_scheme;
-    }
-    assert_int_equal(verdicts_write(path_of("verdicts.md"), "today", &verdicts), STATUS_OK);
-    char wanted[5][200];
-    snprintf(wanted[0], sizeof wanted[0],
-             "\n| all, as printed | %d | %d | 0 | 0 | 0 | 3 |\n| BP22 | 41 | 38 | 0 | 0 | 0 | 3 |\n", claims.count,
-             claims.count - 3);
-    snprintf(wanted[1], sizeof wanted[1], "scheme, corrected | %d | 0 | 0 | 0 | %d | 0 |\n", by_scheme, by_scheme);
-    snprintf(wanted[2], sizeof wanted[2], "\n1 of those that cannot be decided are times");
-    snprintf(wanted[3], sizeof wanted[3], "\n| `%s` | %s | cannot be decided (within the noise) |  |\n",
-             claims.claims[1].id, claims.claims[1].claim);
-    snprintf(wanted[4], sizeof wanted[4], " | holds (criterion changed 2026-11-22, from does not hold) |  |\n");
-    static char text[1 << 16];
-    FILE *file = fopen(path_of("verdicts.md"), "r");
-    assert_non_null(file);
-    text[fread(text, 1, sizeof text - 1, file)] = '\0';
-    fclose(file);
-    for (int k = 0; k < 5; k++)
-        if (!strstr(text, wanted[k]))
-            fail_msg("'%s' is not in: %s", wanted[k], text);
-    claims_free(&claims);
-}
-
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
 
 int main(void)
@@ -404,7 +367,6 @@ int main(void)
         IN_FOLDER(bad_files_are_refused),         IN_FOLDER(the_list_is_not_written_over),
         IN_FOLDER(verdict_follows_the_threshold), IN_FOLDER(slight_is_asked_for),
         IN_FOLDER(memory_stands_for_movement),    IN_FOLDER(failures_decide_nothing),
-        IN_FOLDER(verdicts_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

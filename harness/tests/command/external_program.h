@@ -73,7 +73,7 @@ static const struct {
     {"long", "failed", "said a line of more than 4096 bytes, 'xxx"},
     {"half", "failed", "ended with exit status 0 during `plan`, within a line"},
     {"refuses", "unsupported", "too many? pings"},
-    {"early", "failed", "without being asked"},
+    {"early", "failed", "said 'sasbench1 took 0' without being asked"},
     {"crash", "failed", "ended by signal 11 (Segmentation fault) during `execute`"},
     {"none", "failed", "said `took` without an image.npy: No such file"},
     {"late", "failed", "said `took` without an image.npy: No such file"},

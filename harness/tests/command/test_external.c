@@ -191,7 +191,7 @@ static void numpy_is_measured(void **state)
     told = program_output((const char *const[ARGUMENTS_MAX]){"conformance", "external:/usr/bin/python3 my_bp.py"});
     assert_non_null(strstr(told, "not checked: the counts of work, which an external program leaves empty\n"));
     assert_non_null(strstr(told, ": 0 of "));
-    assert_non_null(strstr(told, "21 of 21 are imaged"));
+    assert_non_null(strstr(told, "21 of 21 are accepted"));
     free(told);
 }
 

@@ -164,10 +164,79 @@ static void tiles_keep_to_a_memory(void **state)
     assert_all_refused(refusals, COUNT_OF(refusals));
 }
 
+/* Some pings of samples that stay in their file are those of the whole. */
+static void samples_in_a_file_are_the_same(void **state)
+{
+    (void)state;
+    struct scene whole, part;
+    struct echoes echoes;
+    long_write();
+    assert_int_equal(scene_from_echoes(path_in("long.mat"), NULL, "grid", &whole), STATUS_OK);
+    assert_int_equal(scene_from_recording(path_in("long.mat"), NULL, "grid", &part), STATUS_OK);
+    const struct acquisition all = part.acquisition;
+    const size_t each = (size_t)all.receivers * (size_t)all.samples;
+    part.recording.first = 1400;
+    part.acquisition = acquisition_part(&all, 1400, 250);
+    assert_int_equal(scene_echoes(&part, &echoes), STATUS_OK);
+    assert_memory_equal(echoes.samples, (const double complex *)whole.recorded + 1400 * each,
+                        250 * each * sizeof(double complex));
+    echoes_free(&echoes);
+    part.acquisition = all;
+    scene_free(&whole);
+    scene_free(&part);
+}
+
+/* The image that `plan` answers with is in as many tiles as it says, and as small. */
+static void plans_are_of_tiles(void **state)
+{
+    (void)state;
+    char spec[200], tile[64], shown[64];
+    int tiles = 0, columns = 0, rows = 0, node = 0, each = 0, lines = 0;
+    long_write();
+    struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"plan", "-e", "long.mat", "--error", "1e-2",
+                                                                            "--memory", "120M", "--nodes", "6"});
+    const char *plan = outcome.out;
+    assert_int_equal(outcome.status, 0);
+    const char *command = strstr(plan, "image --echoes long.mat"), *words = strstr(plan, "In ");
+    assert_non_null(command);
+    assert_non_null(words);
+    assert_non_null(strstr(command, " --memory 120M -a "));
+    assert_int_equal(sscanf(strstr(command, " -a "), " -a %199s", spec), 1);
+    assert_int_equal(sscanf(words, "In %d tiles of %d x %d pixels", &tiles, &columns, &rows), 3);
+    assert_true(tiles > 1);
+    snprintf(tile, sizeof tile, "--tile %dx%d, %d in all", columns, rows, tiles);
+    child_bytes((const char *const[ARGUMENTS_MAX]){"image", "-e", "long.mat", "-a", spec, "-o", "plan.mat", "--memory",
+                                                   "120M"});
+    char *said = support_read("said");
+    assert_non_null(strstr(said, tile));
+    free(said);
+    const char *line = strstr(plan, " rate\n");
+    assert_non_null(line);
+    snprintf(tile, sizeof tile, "%dx%d", columns, rows);
+    for (line += strlen(" rate"); sscanf(line, "\n %d %63s %d", &node, shown, &each) == 3;
+         line = strchr(line + 1, '\n')) {
+        assert_int_equal(node, lines < 3 ? 1 << lines : 6);
+        assert_true(lines > 0 || (each == tiles && strcmp(shown, tile) == 0));
+        lines++;
+    }
+    assert_int_equal(lines, 4);
+    outcome_free(&outcome);
+    outcome = program_run((const char *const[ARGUMENTS_MAX]){"plan", "-e", "long.mat", "--memory", "18M"});
+    assert_int_equal(outcome.status, 1);
+    assert_non_null(strstr(outcome.err, "sasbench: plan: --memory: no tile fits into 18 MB"));
+    outcome_free(&outcome);
+    static const struct refusal refusals[] = {
+        {{"plan", "-e", "long.mat", "--nodes", "0"}, {"--nodes", "'0'", "1 to 100000"}},
+        {{"plan", "study/quick", "--nodes", "2.5"}, {"--nodes", "'2.5'", "whole number"}},
+    };
+    assert_all_refused(refusals, COUNT_OF(refusals));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(processes_take_what_plans_say),
                                        cmocka_unit_test(budgets_are_of_the_process),
-                                       cmocka_unit_test(tiles_keep_to_a_memory)};
+                                       cmocka_unit_test(tiles_keep_to_a_memory), cmocka_unit_test(plans_are_of_tiles),
+                                       cmocka_unit_test(samples_in_a_file_are_the_same)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

@@ -216,6 +216,9 @@ static void faulty_loads_are_refused(void **state)
          "cannot be loaded: this ends by signal 6"},
         {"s/^static int make/__attribute__((constructor)) static void begin(void) { exit(0); }\\n&/",
          "cannot be loaded: this ends the program with exit status 0"},
+        {"s/^static int make/#include <signal.h>\\n__attribute__((constructor)) static void begin(void) { "
+         "raise(SIGSTOP); }\\n&/",
+         "cannot be loaded: this stops by signal 19"},
         {"s/static const struct sas_setting/const struct sas_setting/; s/1, &taps/1, NULL/", "but `settings` is NULL"},
         {"s/\"taps\"/\"precision\"/", "its name is that of another setting, or of precision"},
         {"s/\"taps\"/\"two words\"/", "a name without blanks"},

@@ -134,7 +134,10 @@ static void unfit_images_are_refused(void **state)
 {
     (void)state;
     image_make("bp_nearest", "other.mat");
+    program_good((const char *const[ARGUMENTS_MAX]){"image", "-s", "study/quick", "-g", "-0.6:0.02:40,19.85:0.025:13",
+                                                    "-a", "bp_nearest", "-o", "part.mat"});
     static const struct refusal refusals[] = {
+        {{"score", "part.mat", "study/quick"}, {"-0.6:0.02:40,19.85:0.025:13,0", "needed is -0.6:0.02:61", "cure: "}},
         {{"score", "other.mat", "study/swath"}, {"-0.6:0.02:61,19.85:0.025:13,0", "needed is -3.6:0.02:101"}},
         {{"score", "other.mat", "study/quick", "--name", "bp_sinc"}, {"--name is 'bp_sinc'"}},
         {{"score", "other.mat", "study/quick", "--name", "a,b"}, {"--name is 'a,b'", "letters"}},
@@ -149,7 +152,14 @@ static void unfit_images_are_refused(void **state)
         {{"score", "/dev/zero.npy", "study/quick"}, {"/dev/zero.npy"}},
         {{"compare", "other.mat", "scene.mat"}, {"scene.mat"}},
         {{"compare", "ran", "ran", "-o", "x.png"}, {"two image files"}},
+        {{"compare", "rows.npy", "other.mat"}, {"rows.npy", "NumPy array", "savemat"}},
+        {{"compare", "nan.mat", "other.mat"}, {"compare: nan.mat has pixels that are not finite"}},
     };
+    struct image_file file;
+    assert_int_equal(image_file_open(path_in("other.mat"), &file), STATUS_OK);
+    *(double complex *)file.image.pixels[0] = NAN;
+    assert_int_equal(image_file_write(path_in("nan.mat"), &file.image, &file.origin), STATUS_OK);
+    image_file_close(&file);
     size_t size;
     char *bytes = bytes_read("rows.npy", &size);
     bytes_write("short.npy", bytes, 128 + 12);
