@@ -18,8 +18,10 @@ struct conformance {
         int kept, broken;
         char place[200]; /* what is at work */
         bool monostatic;
-        int accepted; /* scenes */
-    } * tally;        /* shared with the process that waits */
+        int accepted;     /* scenes */
+        bool ended;       /* the check ran to its end: no `exit` of the algorithm's */
+        double failing_s; /* spent in plans and executes that fail */
+    } * tally;            /* shared with the process that waits */
 };
 
 /* A check on one scene: on each of them, or on the usual one. */

@@ -141,7 +141,10 @@ static enum status hear(struct external_plan *plan, const char *during, char lin
         if (ready < 0 && errno == EINTR)
             continue;
         if (ready <= 0)
-            return fail(plan, "was silent for %g s during %s (--timeout)", timeout_s, during);
+            return plan->heard_count == 0
+                       ? fail(plan, "was silent for %g s during %s (--timeout)", timeout_s, during)
+                       : fail(plan, "was silent for %g s (--timeout) during %s, after '%.*s' without a line's end",
+                              timeout_s, during, (int)fmin((double)plan->heard_count, 60), plan->heard);
         const ssize_t found =
             polled[0].revents ? read(plan->keeper.from, plan->heard + plan->heard_count, LINE_MOST - plan->heard_count)
                               : 0;

@@ -33,16 +33,24 @@ static enum status fences_set(struct imaging *imaging)
     return STATUS_OK;
 }
 
-/* Were they left alone? */
-static bool fences_drop(struct imaging *imaging)
+bool imaging_is_fenced(const struct imaging *imaging)
 {
     bool held = true;
     for (int k = 0; k < imaging->fenced; k++) {
         const size_t bytes = patch_bytes(&imaging->image, k);
-        unsigned char *pixels = imaging->image.pixels[k], *block = pixels - FENCE;
+        const unsigned char *pixels = imaging->image.pixels[k], *before = pixels - FENCE;
         for (size_t n = 0; n < FENCE; n++)
-            held = held && block[n] == FENCE_BYTE && pixels[bytes + n] == FENCE_BYTE;
-        imaging->image.pixels[k] = memmove(block, pixels, bytes);
+            held = held && before[n] == FENCE_BYTE && pixels[bytes + n] == FENCE_BYTE;
+    }
+    return held;
+}
+
+static bool fences_drop(struct imaging *imaging)
+{
+    const bool held = imaging_is_fenced(imaging);
+    for (int k = 0; k < imaging->fenced; k++) {
+        unsigned char *pixels = imaging->image.pixels[k];
+        imaging->image.pixels[k] = memmove(pixels - FENCE, pixels, patch_bytes(&imaging->image, k));
     }
     imaging->fenced = 0;
     return held;

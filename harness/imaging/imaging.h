@@ -25,6 +25,8 @@ void imaging_reads(const struct imaging *imaging, const struct problem *problem,
 
 /* Execute once, and nothing else: what is timed. Errors: what execute returns. */
 enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes, struct stages *stages);
+/* Was the memory beside a guest's image left alone? */
+bool imaging_is_fenced(const struct imaging *imaging);
 
 /* The finished image: checked, scaled by the echoes' exponent, handed over to the caller, who frees it with image_free;
    the imaging keeps none. Of a window, image->patches points into the imaging. Errors: STATUS_FAILED when a pixel is

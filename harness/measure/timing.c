@@ -16,6 +16,7 @@
 #include "echoes/echo_data.h"
 #include "guests/keeper.h"
 #include "imaging/imaging.h"
+#include "measure/guise.h"
 
 #define FLOPS_MOST    1e12 /* a second and thread: no processor does as many */
 #define THREADS_SLACK 1.1  /* of processor time over threads times run time, for clocks that tick differently */
@@ -79,97 +80,41 @@ static double system_s(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_stime.tv_sec + 1e-6 * usage.ru_stime.tv_usec : 0;
 }
 
-/* Runs that are compared: every other one images the negated echoes, into an image of NaN. */
+/* Runs that are compared. */
 struct trial {
     struct imaging *imaging;
-    struct echoes *echoes;
-    int runs;               /* so far; while odd, the echoes are negated */
-    double complex sums[2]; /* of the last image, and of the one before it */
+    struct guise guise;
 };
-
-static void image_spoil(const struct image *image)
-{
-    const double complex spoilt = NAN + NAN * I;
-    for (int k = 0; k < image->patch_count; k++) {
-        float complex *single = image->pixels[k];
-        double complex *both = image->pixels[k];
-        const size_t count = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count;
-        for (size_t n = 0; n < count; n++)
-            if (image->precision == PRECISION_FLOAT)
-                single[n] = (float complex)spoilt;
-            else
-                both[n] = spoilt;
-    }
-}
-
-/* Weighted sum of all pixels; the sum of the negated image is its exact negative. */
-static double complex image_sum(const struct image *image)
-{
-    double complex sum = 0;
-    unsigned weight = 1;
-    for (int k = 0; k < image->patch_count; k++)
-        for (int i = 0; i < image->patches[k].r_count; i++)
-            for (int j = 0; j < image->patches[k].x_count; j++) {
-                weight = 1664525 * weight + 1013904223;
-                sum += (1 + 0x1p-32 * weight) * image_pixel(image, k, i, j);
-            }
-    return sum;
-}
-
-/* The images before it were of the negated echoes, and of the same. Filters need not be linear; but the same echoes
-   have the same image, and the negated ones another, unless it is kept. */
-static enum status sum_check(const struct trial *trial, double complex sum)
-{
-    const struct algorithm *algorithm = trial->imaging->algorithm;
-    const double complex negated = trial->sums[0], same = trial->sums[1];
-    const bool filtered = algorithm->traits & TRAIT_FILTERED;
-    if (trial->runs < 2 || !isfinite(cabs(sum)) || !isfinite(cabs(negated)))
-        return STATUS_OK;
-    if (filtered && sum == negated && sum != 0)
-        return status_set(STATUS_FAILED, "%s: the image of the negated echoes is the same image (run %d)",
-                          algorithm->name, trial->runs);
-    if (filtered && trial->runs > 2 && isfinite(cabs(same)) && sum != same)
-        return status_set(STATUS_FAILED, "%s: the same echoes have another image (run %d)", algorithm->name,
-                          trial->runs);
-    if (!filtered && sum != -negated)
-        return status_set(STATUS_FAILED, "%s: the image of the negated echoes is not the negated image (run %d)",
-                          algorithm->name, trial->runs);
-    return STATUS_OK;
-}
 
 /* Pixels that the imaging leaves unwritten stay NaN, which imaging_finish refuses. */
 static enum status run_once(struct trial *trial, struct stages *stages, double *seconds)
 {
-    image_spoil(&trial->imaging->image);
+    struct imaging *imaging = trial->imaging;
+    guise_spoil(&imaging->image);
     stages_begin(stages);
     double start = stages->mark;
-    enum status status = imaging_execute(trial->imaging, trial->echoes, stages);
+    enum status status = imaging_execute(imaging, trial->guise.echoes, stages);
     *seconds = seconds_now() - start;
-    const double complex sum = image_sum(&trial->imaging->image);
-    echoes_negate(trial->echoes);
-    trial->runs++;
-    if (status == STATUS_OK)
-        status = sum_check(trial, sum);
-    trial->sums[1] = trial->sums[0];
-    trial->sums[0] = sum;
-    return status;
+    const enum status next = guise_next(&trial->guise, &imaging->image);
+    if (status == STATUS_OK && stages->count == 0)
+        return status_set(STATUS_FAILED, "%s: it names no stage, must name at least one", imaging->algorithm->name);
+    if (status == STATUS_OK && !imaging_is_fenced(imaging))
+        return status_set(STATUS_FAILED, "%s wrote outside its image", imaging->algorithm->name);
+    return status == STATUS_OK ? next : status;
 }
 
-/* Restore the echoes and their image; filters, which need not be linear, form it again. */
-static enum status trial_end(struct trial *trial)
+/* Restore the echoes and their image; filters, which need not be linear, form it again, as do those whose last image is
+   of other echoes. */
+static enum status trial_end(struct trial *trial, bool whole)
 {
     struct stages stages;
     double seconds;
-    if (trial->runs % 2 == 0 && trial->imaging->algorithm->traits & TRAIT_FILTERED) {
-        const enum status status = run_once(trial, &stages, &seconds);
-        echoes_negate(trial->echoes);
-        return status;
-    }
-    if (trial->runs % 2 == 1)
-        echoes_negate(trial->echoes);
-    else
-        image_negate(&trial->imaging->image);
-    return STATUS_OK;
+    const bool filtered = trial->imaging->algorithm->traits & TRAIT_FILTERED;
+    enum status status = STATUS_OK;
+    if (whole && trial->guise.runs > 0 && (!guise_plain(&trial->guise) || (filtered && trial->guise.runs % 2 == 0)))
+        status = run_once(trial, &stages, &seconds);
+    const enum status ended = guise_end(&trial->guise, &trial->imaging->image);
+    return ended == STATUS_OK ? status : ended;
 }
 
 /* s of processor time that the process used, and external programs. */
@@ -226,39 +171,15 @@ static enum status repeat(struct trial *trial, const struct budget *budget, stru
     return status;
 }
 
-/* A copy of a guest's samples, where there is room for one. */
-static void *samples_keep(const struct algorithm *guest, const struct echoes *echoes, size_t *size)
-{
-    const struct acquisition *a = echoes->acquisition;
-    *size = size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, precision_size(echoes->precision));
-    void *kept =
-        guest->origin && memory_check((double)*size, "a copy of the samples") == STATUS_OK ? malloc(*size) : NULL;
-    return kept ? memcpy(kept, echoes->samples, *size) : NULL;
-}
-
-/* Other algorithms image the same samples later. */
-static enum status samples_restore(const struct algorithm *guest, const struct echoes *echoes, const void *kept,
-                                   size_t size)
-{
-    if (!kept || memcmp(kept, echoes->samples, size) == 0)
-        return STATUS_OK;
-    memcpy((void *)echoes->samples, kept, size);
-    return status_set(STATUS_FAILED, "%s: it changed its samples, must only read them", guest->name);
-}
-
 /* Repeated runs, checked against their number of threads. */
 static enum status try_runs(struct trial *trial, const struct budget *budget, struct timing_samples *samples)
 {
     const int threads = omp_get_max_threads();
-    size_t size;
-    void *kept = samples_keep(trial->imaging->algorithm, trial->echoes, &size);
     const double begin = seconds_now(), busy = busy_s();
     enum status status = repeat(trial, budget, samples);
     const double processors = (busy_s() - busy) / (seconds_now() - begin);
-    const enum status ended = trial_end(trial);
-    const enum status restored = samples_restore(trial->imaging->algorithm, trial->echoes, kept, size);
-    free(kept);
-    status = restored != STATUS_OK ? restored : status == STATUS_OK ? ended : status;
+    const enum status ended = trial_end(trial, status == STATUS_OK);
+    status = status == STATUS_OK ? ended : status;
     if (status == STATUS_OK && processors > THREADS_SLACK * threads)
         return status_set(STATUS_FAILED, "%s kept %.1f processors busy with --threads %d",
                           trial->imaging->algorithm->name, processors, threads);
@@ -353,7 +274,7 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     status = control_sample(control, true, samples, &before);
     const double begin = seconds_now();
     if (status == STATUS_OK)
-        status = try_runs(&(struct trial){.imaging = &imaging, .echoes = echoes}, budget, samples);
+        status = try_runs(&(struct trial){&imaging, guise_begin(imaging.algorithm, echoes)}, budget, samples);
     timing->spent_s = seconds_now() - begin;
     if (status == STATUS_OK)
         status = control_sample(control, effort == EFFORT_BRIEF, samples, &after);

@@ -33,6 +33,7 @@ EXECUTE(execute_plans);
 EXECUTE(execute_races);
 EXECUTE(execute_last_pixel);
 EXECUTE(execute_nan);
+EXECUTE(execute_exits);
 EXECUTE(execute_adds);
 EXECUTE(execute_gain);
 EXECUTE(execute_first_patch);

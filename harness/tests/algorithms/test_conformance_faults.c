@@ -118,6 +118,7 @@ static const struct fault {
     {"races", "other bits", {.execute = execute_races}},
     {"last pixel not written", "the error against reference is", {.execute = execute_last_pixel}},
     {"NaN", "ordinary: the error against reference is nan, at most 0.15", {.execute = execute_nan}},
+    {"exit", "ordinary, double: images ended the program with exit status", {.execute = execute_exits}},
     {"not linear", "sum of two echoes: the difference", {.execute = execute_adds}},
     {"not exact", "ordinary: the error against reference is 0.0", {.traits = TRAIT_EXACT}},
     {"without a baseline", "0 rows of it; `./sasbench baseline` adds them", {.name = "no_such_algorithm"}},
@@ -137,6 +138,7 @@ static struct algorithm faulty = {
     .destroy = bp_destroy,
 };
 const struct algorithm *const algorithms[] = {&reference, &faulty, NULL};
+const struct algorithm *const algorithm_filters[] = {NULL};
 
 const struct algorithm *algorithm_find(const char *name)
 {

@@ -85,7 +85,7 @@ static const struct {
     {"short", "failed", "image.npy: ends after 792 of 793 numbers"},
     {"type", "failed", "image.npy: its array is {'descr': '<i8'"},
     {"nan", "failed", "values that are not finite"},
-    {"memo", "failed", "the negated echoes is not the negated image"},
+    {"memo", "failed", "half of the pings negated have the same image"},
     {"clock", "failed", "said that it took 1e+03 s"},
     {"negative", "failed", "said 'sasbench1 took -1' to `execute`, must be 'sasbench1 took SECONDS'"},
     {"word", "failed", "said 'sasbench1 took long' to `execute`"},
