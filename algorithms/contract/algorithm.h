@@ -210,6 +210,8 @@ struct algorithm {
 
 /* The registered algorithms in the order of algorithms/meson.build; NULL ends the list. */
 extern const struct algorithm *const algorithms[];
+/* The same of filters, which only stand ahead of an algorithm. */
+extern const struct algorithm *const algorithm_filters[];
 
 /* Call its callbacks; without its own, costs are the forecast's and conditions the general ones. */
 static inline enum status algorithm_plan(const struct algorithm *algorithm, const struct problem *problem,

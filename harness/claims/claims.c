@@ -262,14 +262,14 @@ static void basis_add(void *to, const char *scene, const char *spec)
     basis_use(to, USE_SETTING, spec);
 }
 
-/* "; settings: ...; scenes: ...; azimuth slices: ...; printed numbers: ..." */
+/* "; settings: ...; scenes: ...; slices: ...; printed numbers: ..." */
 static void basis_append(char *evidence, size_t size, const struct basis *basis)
 {
     const struct {
         const char *title, *list;
     } parts[] = {{"settings", basis->settings},
                  {"scenes", basis->scenes},
-                 {"azimuth slices", basis->slices},
+                 {"slices", basis->slices},
                  {"printed numbers", basis->tables}};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         if (*parts[k].list)

@@ -53,7 +53,7 @@ static enum status spec_check(struct formula *formula, struct call *call, int k)
     char message[400], text[sizeof call->text[0]];
     formula->by_scheme |= scheme_spec(formula->scheme, assumed_text(call->text[k]), text, sizeof text);
     strcpy(call->text[k], text);
-    const enum status status = spec_parse(call->text[k], &spec);
+    const enum status status = spec_own(call->text[k], &spec);
     snprintf(message, sizeof message, "%s", status == STATUS_OK ? "" : status_message());
     spec_free(&spec); /* zeroed where it was refused */
     return status == STATUS_OK ? STATUS_OK : formula_error(formula, call->at[k], "%s", message);
@@ -308,7 +308,7 @@ static enum status scene_number(struct formula *formula, struct call *call, stru
 /* ---- calls ---- */
 
 static const char *const setups[] = {"short", "long", NULL}, *const receivers[] = {"first", "last", NULL};
-static const char *const slices[] = {"null", "3db", "pixel", NULL};
+static const char *const slices[] = {"null", "3db", "pixel", "range", NULL};
 static const struct lookup lookups[] = {
     {"stage", "scene, SPEC, stage", "sp-", 1, stage, {NULL}, {0}},
     {"time", "table, method, definition", "---", 1, table_time, {NULL}, {0}},

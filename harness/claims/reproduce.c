@@ -104,7 +104,7 @@ static enum status scene_measure(struct batch *batch, struct need *needs, int co
         return status;
     for (int k = 0; k < count && status == STATUS_OK; k++)
         if (needs[k].scene && strcmp(needs[k].scene, name) == 0) {
-            status = spec_parse(needs[k].spec, &specs[spec_count]);
+            status = spec_own(needs[k].spec, &specs[spec_count]);
             spec_count += status == STATUS_OK;
             needs[k].scene = NULL;
         }

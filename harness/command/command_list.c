@@ -39,6 +39,9 @@ enum status command_list(const struct task *task)
         printf("%-13s %s\n%-13s %s; ", algorithms[k]->name, algorithms[k]->summary, "", algorithms[k]->reference);
         print_traits(algorithms[k]);
     }
+    for (int k = 0; algorithm_filters[k]; k++)
+        printf("%-13s %s: ahead of an algorithm, '%s | wk_squint'\n%-13s %s\n", algorithm_filters[k]->name,
+               algorithm_filters[k]->summary, algorithm_filters[k]->name, "", algorithm_filters[k]->reference);
     return STATUS_OK;
 }
 

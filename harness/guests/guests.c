@@ -43,6 +43,18 @@ char *guest_settle(const char *spec)
     return text;
 }
 
+bool guest_foreign(const char *spec)
+{
+    for (const char *at = spec, *bar;; at = bar + 1 + strspn(bar + 1, " \t\n")) {
+        for (int k = 0; k < KINDS; k++)
+            if (kinds[k]->length(at) > 0)
+                return true;
+        bar = strchr(at, '|');
+        if (!bar)
+            return false;
+    }
+}
+
 /* Of the name that a SPEC begins with, and its kind: NULL for the table's. */
 static size_t name_length(const char *spec, const struct guest_kind **kind)
 {
@@ -68,9 +80,10 @@ const struct algorithm *guest_find(const char *spec, const char **rest)
     const struct guest_kind *kind;
     const size_t length = name_length(spec, &kind);
     *rest = spec + length;
-    for (int k = 0; algorithms[k] && !kind; k++)
-        if (strlen(algorithms[k]->name) == length && strncmp(algorithms[k]->name, spec, length) == 0)
-            return algorithms[k];
+    for (int table = 0; table < 2 && !kind; table++)
+        for (const struct algorithm *const *at = table ? algorithm_filters : algorithms; *at; at++)
+            if (strlen((*at)->name) == length && strncmp((*at)->name, spec, length) == 0)
+                return *at;
     for (const struct guest *guest = guests; guest; guest = guest->next)
         if (strlen(guest->name) == length && strncmp(guest->name, spec, length) == 0)
             return &guest->algorithm;

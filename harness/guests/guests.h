@@ -4,6 +4,8 @@
 #ifndef SASBENCH_GUESTS_GUESTS_H
 #define SASBENCH_GUESTS_GUESTS_H
 
+#include <stdbool.h>
+
 #include "contract/algorithm.h"
 
 /* A kind of them: a row of `kinds` in guests.c. */
@@ -28,6 +30,8 @@ const struct algorithm *guest_find(const char *spec, const char **rest);
 
 /* The last link of a chain "FILTER | FILTER | ALGORITHM:settings", without blanks ahead of it; else the SPEC itself. */
 const char *guest_last(const char *spec);
+/* Does a link of the SPEC name code from outside the program? */
+bool guest_foreign(const char *spec);
 /* The same SPEC with one blank on either side of each '|', malloc'ed; NULL without memory. */
 char *guest_settle(const char *spec);
 

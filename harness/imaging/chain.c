@@ -284,7 +284,7 @@ static enum status filter_take(struct chain *chain, const char *text)
 {
     if (!*text)
         return status_set(STATUS_INVALID,
-                          "SPEC '%.100s': a filter is missing ahead of '|'; accepted: 'FILTER.so | ALGORITHM'",
+                          "SPEC '%.100s': a filter is missing ahead of '|'; accepted: 'FILTER | ALGORITHM'",
                           chain->name);
     if (chain->count == FILTERS_MOST)
         return status_set(STATUS_INVALID, "SPEC '%.100s': it has more than %d filters", chain->name, FILTERS_MOST);
@@ -297,13 +297,14 @@ static enum status filter_take(struct chain *chain, const char *text)
     chain->count++;
     if (!filter->algorithm->filter)
         return status_set(STATUS_INVALID,
-                          "SPEC '%.100s': %s forms images, so it must be the last link; accepted ahead of '|': shared "
-                          "objects that define sas_filter_plugin",
+                          "SPEC '%.100s': %s forms images, so it must be the last link; accepted ahead of '|': "
+                          "monostatic, shared objects that define sas_filter_plugin",
                           chain->name, filter->algorithm->name);
     if (spec_given(filter, "precision"))
         return status_set(STATUS_INVALID, "SPEC '%.100s': precision is given to a filter; accepted: to the last link",
                           chain->name);
-    text_append(chain->origin, sizeof chain->origin, "%s ", filter->algorithm->origin);
+    text_append(chain->origin, sizeof chain->origin, "%s%s", filter->algorithm->origin ? filter->algorithm->origin : "",
+                filter->algorithm->origin ? " " : "");
     text_append(chain->summary, sizeof chain->summary, "%s, then ", filter->algorithm->summary);
     return STATUS_OK;
 }
@@ -363,7 +364,7 @@ static enum status chain_make(const char *name, struct algorithm *algorithm)
     }
     *algorithm = (struct algorithm){
         .name = name,
-        .origin = chain->origin,
+        .origin = *chain->origin ? chain->origin : NULL,
         .summary = chain->summary,
         .reference = chain->last->reference,
         .traits = (chain->last->traits & ~(unsigned)TRAIT_WINDOW) | TRAIT_FILTERED,

@@ -239,6 +239,14 @@ enum status spec_asked(const char *text, struct spec *spec)
                       text, text);
 }
 
+enum status spec_own(const char *text, struct spec *spec)
+{
+    *spec = (struct spec){.algorithm = NULL};
+    return guest_foreign(text)
+               ? status_set(STATUS_INVALID, "SPEC '%.100s': algorithms of this program alone are accepted", text)
+               : spec_asked(text, spec);
+}
+
 void spec_free(struct spec *spec)
 {
     free(spec->options);

@@ -18,6 +18,8 @@ struct spec {
 enum status spec_parse(const char *text, struct spec *spec);
 /* The same of a SPEC that the user gave, which may name code of the user's own. Errors: also as guest_invite. */
 enum status spec_asked(const char *text, struct spec *spec);
+/* The same of a SPEC from a file of the program's: a chain of its own algorithms at most. */
+enum status spec_own(const char *text, struct spec *spec);
 void spec_free(struct spec *spec);
 
 /* A copy; the same with one more setting. Errors: STATUS_FAILED without memory; as spec_parse, also when the key was

@@ -68,7 +68,7 @@ static const struct measurement *row_find(const struct measured *measured, const
     struct spec spec;
     const struct measurement *row = NULL;
     const char *assumed = assumed_scene_name(scene);
-    *valid = spec_parse(spec_text, &spec) == STATUS_OK;
+    *valid = spec_own(spec_text, &spec) == STATUS_OK;
     for (int k = 0; *valid && k < measured->measurements.csv.row_count && !row; k++) {
         const struct measurement *m = &measured->measurements.measurements[k];
         if (strcmp(m->scene, assumed) == 0 && strcmp(m->algorithm, spec.algorithm->name) == 0
@@ -126,12 +126,14 @@ double measured_target(struct measured *measured, const char *scene, const char 
                        const char *definition, size_t offset, const char *name)
 {
     const struct measurement *row = measurement_find(measured, scene, spec);
+    const bool along_range = strcmp(definition, "range") == 0;
+    const char *axis = along_range ? "range" : "azimuth", *by = along_range ? "null" : definition;
     double value = NAN;
     for (int k = 0; row && k < measured->targets.csv.row_count; k++) {
         const struct target_row *t = &measured->targets.target_rows[k];
         if (t->target == target && strcmp(t->scene, row->scene) == 0 && strcmp(t->algorithm, row->algorithm) == 0
             && strcmp(t->options, row->options) == 0 && strcmp(t->precision, row->precision) == 0
-            && strcmp(t->axis, "azimuth") == 0 && strcmp(t->definition, definition) == 0)
+            && strcmp(t->axis, axis) == 0 && strcmp(t->definition, by) == 0)
             value = *(const double *)((const char *)t + offset);
     }
     if (!isfinite(value))

@@ -105,7 +105,7 @@ double unimaged_value(struct measured *measured, const char *scene_name, const c
         return value;
     enum status status = assumed_scene_load(scene_name, &scene);
     if (status == STATUS_OK) {
-        status = spec_parse(spec_text, &spec);
+        status = spec_own(spec_text, &spec);
         if (status == STATUS_OK) {
             const bool filtered = quantity >= QUANTITY_UPSAMPLING && quantity <= QUANTITY_CHANGED_DB;
             status = (filtered ? filter_find : plan_find)(measured, &asked, &scene, &spec);

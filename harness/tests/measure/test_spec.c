@@ -35,6 +35,7 @@ static const struct algorithm full = {
 };
 static const struct algorithm bare = {.name = "bare"};
 const struct algorithm *const algorithms[] = {&full, &bare, NULL};
+const struct algorithm *const algorithm_filters[] = {NULL};
 
 const struct algorithm *algorithm_find(const char *name)
 {

@@ -1,0 +1,183 @@
+/* The filter `monostatic`: multi-receiver echoes, squinted and not, that omega-k images within its error, and what it
+   refuses. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "imaging/spec.h"
+#include "scene/scene.h"
+#include "tests/support.h"
+
+#define RECEIVERS_20 "base = {\n@include \"" SASBENCH_ROOT "/scenes/sq18/receivers_20.cfg\"\n};\n"
+
+static void scene_make(const char *keys, struct scene *scene)
+{
+    char text[2000];
+    snprintf(text, sizeof text, RECEIVERS_20 "%s", keys);
+    support_write("varied.cfg", text);
+    if (scene_load(path_of("varied.cfg"), SASBENCH_ROOT "/scenes", scene) != STATUS_OK)
+        fail_msg("%s: %s", keys, status_message());
+}
+
+/* Invites the chain, whose name is then known. */
+static void chain_settle(const char *text, char *settled, size_t size)
+{
+    struct spec spec;
+    if (spec_own(text, &spec) != STATUS_OK)
+        fail_msg("%s: %s", text, status_message());
+    snprintf(settled, size, "%s%s%s", spec.algorithm->name, *spec.text ? ":" : "", spec.text);
+    spec_free(&spec);
+}
+
+static double error_of(const char *text, const struct scene *scene, enum precision precision)
+{
+    char spec[300];
+    struct echoes echoes;
+    struct image exact, image;
+    const struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
+    chain_settle(text, spec, sizeof spec - 20);
+    if (precision == PRECISION_DOUBLE)
+        strcat(spec, strchr(spec, '=') > strchr(spec, '|') ? ",precision=double" : ":precision=double");
+    support_echoes(scene, &echoes);
+    assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
+    const enum status status = support_image(spec, problem, &echoes, &image);
+    if (status != STATUS_OK)
+        fail_msg("%s: %s", spec, status_message());
+    const double error = support_difference(&image, &exact);
+    image_free(&image);
+    image_free(&exact);
+    echoes_free(&echoes);
+    return error;
+}
+
+static void images_are_within_a_percent(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *keys;
+        double most; /* of wk_squint; back projection by degree 5 leaves the conversion's own */
+    } cases[] = {
+        {"", 0.01},
+        {"pulse = { kind = \"flat\"; };\n", 0.01},
+        {"track = { speed = -2.0; pri = 0.1; pings = 52; x_first = 5.2; };\n", 0.01},
+        {"track = { speed = 0.0; pri = 0.1; spacing = 0.2; pings = 52; x_first = -5.2; };\n", 0.01},
+        {"track = { speed = 2.0; pri = 0.1; pings = 53; x_first = -5.3; };\n", 0.01},
+        /* Receivers on both sides; a raster a fiftieth of its spacing off. */
+        {"array = { tx_length = 0.2; rx_length = 0.08; receivers = 5; first_offset = -0.16; pitch = 0.08; };\n", 0.01},
+        {"array = { tx_length = 0.2; rx_length = 0.08; receivers = 5; first_offset = 0.08; pitch = 0.0808; };\n", 0.02},
+        /* One receiver of a bistatic pair; one at the transmitter. */
+        {"array = { tx_length = 0.2; rx_length = 0.2; receivers = 1; first_offset = 0.5; };\n"
+         "track = { speed = 0.4; pri = 0.1; pings = 256; x_first = -5.12; };\n",
+         0.01},
+        {"array = { tx_length = 0.2; rx_length = 0.2; receivers = 1; first_offset = 0.0; };\n"
+         "track = { speed = 0.4; pri = 0.1; pings = 256; x_first = -5.12; };\n",
+         0.01},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct scene scene;
+        scene_make(cases[k].keys, &scene);
+        for (int precision = 0; precision < 2; precision++) {
+            const double squint = error_of("monostatic | wk_squint", &scene, precision);
+            const double pairs = error_of("monostatic | bp_farrow:degree=5", &scene, precision);
+            print_message("case %zu: wk_squint %.2g, bp_farrow %.2g\n", k + 1, squint, pairs);
+            assert_true(squint <= cases[k].most && pairs <= cases[k].most);
+        }
+        scene_free(&scene);
+    }
+}
+
+/* More taps err less on a lone sonar, where nothing else does. */
+static void taps_converge(void **state)
+{
+    (void)state;
+    struct scene scene;
+    scene_make("array = { tx_length = 0.2; rx_length = 0.2; receivers = 1; first_offset = 0.0; };\n"
+               "track = { speed = 0.4; pri = 0.1; pings = 256; x_first = -5.12; };\n",
+               &scene);
+    assert_true(error_of("monostatic|reference", &scene, PRECISION_DOUBLE) <= 1e-3);
+    scene_free(&scene);
+    scene_make("", &scene);
+    const double few = error_of("monostatic:taps=8|reference", &scene, PRECISION_DOUBLE);
+    const double many = error_of("monostatic:taps=24|reference", &scene, PRECISION_DOUBLE);
+    print_message("8 taps %.2g, 24 taps %.2g\n", few, many);
+    assert_true(many < few);
+    scene_free(&scene);
+}
+
+static void refused(const char *keys, const char *reason)
+{
+    struct scene scene;
+    struct echoes echoes;
+    struct image image;
+    char spec[300];
+    scene_make(keys, &scene);
+    chain_settle("monostatic | wk_squint", spec, sizeof spec);
+    support_echoes(&scene, &echoes);
+    assert_int_equal(support_image(spec, scene_problem(&scene, PRECISION_DOUBLE), &echoes, &image), STATUS_UNSUPPORTED);
+    if (!strstr(status_message(), reason))
+        fail_msg("%s: %s", keys, status_message());
+    echoes_free(&echoes);
+    scene_free(&scene);
+}
+
+static void others_are_refused(void **state)
+{
+    (void)state;
+    refused("track = { speed = 2.4; pri = 0.1; pings = 52; x_first = -6.2; };\n", "condition conversion");
+    refused("array = { tx_length = 0.2; rx_length = 0.08; receivers = 5; first_offset = 6.0; pitch = 0.08; };\n",
+            "condition conversion");
+    refused("track = { speed = 2.0; pri = 0.1; pings = 52; x_first = -5.2; errors_known = true;\n"
+            "errors = ( { axis = \"sway\"; amplitude = 0.01; period = 2.0; } ); };\n",
+            "condition uniform_track");
+    refused("track = { speed = 2.0; pri = 0.1; pings = 1; x_first = 0.0; };\n", "condition uniform_track");
+}
+
+static void threads_make_the_same_bits(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes echoes;
+    struct image images[2];
+    char spec[300];
+    scene_make("", &scene);
+    chain_settle("monostatic | wk_squint", spec, sizeof spec);
+    support_echoes(&scene, &echoes);
+    const int threads = omp_get_max_threads();
+    for (int k = 0; k < 2; k++) {
+        omp_set_num_threads(1 + 2 * k);
+        assert_int_equal(support_image(spec, scene_problem(&scene, PRECISION_FLOAT), &echoes, &images[k]), STATUS_OK);
+    }
+    omp_set_num_threads(threads);
+    assert_true(support_difference(&images[0], &images[1]) == 0);
+    image_free(&images[0]);
+    image_free(&images[1]);
+    echoes_free(&echoes);
+    scene_free(&scene);
+}
+
+/* No file of the program's names code from elsewhere, and a filter forms no image. */
+static void specs_are_the_programs_own(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"monostatic",          "./a.so",
+                                        "./a.so | bp_sinc",    "monostatic | ./a.so",
+                                        "external:true",       "monostatic | external:true",
+                                        "bp_sinc | wk_squint", "monostatic:taps=9 | wk_squint",
+                                        "monostatic | auto"};
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+        struct spec spec;
+        assert_int_equal(spec_own(texts[k], &spec), STATUS_INVALID);
+        assert_null(spec.algorithm);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(images_are_within_a_percent), cmocka_unit_test(taps_converge),
+        cmocka_unit_test(others_are_refused),          cmocka_unit_test(threads_make_the_same_bits),
+        cmocka_unit_test(specs_are_the_programs_own),
+    };
+    return cmocka_run_group_tests_name("monostatic", tests, folder_make, folder_remove);
+}
