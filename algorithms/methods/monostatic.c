@@ -1,4 +1,4 @@
-/* The filter that turns multi-receiver echoes into monostatic ones (wavenumber/monostatic.h), as "monostatic |
+/* The filter that turns multi-receiver echoes into monostatic ones (wavenumber/monostatic_plan.h), as "monostatic |
    wk_squint": omega-k of squinted multi-receiver scenes. At broadside rma_delay corrects what this leaves off the
    beam's axis.
 
@@ -10,7 +10,7 @@
 
 #include "contract/condition.h"
 #include "range_migration/rma.h"
-#include "wavenumber/monostatic.h"
+#include "wavenumber/monostatic_plan.h"
 
 static const double ERROR_MOST = 0.1; /* as rma_delay's */
 

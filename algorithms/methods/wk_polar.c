@@ -6,13 +6,15 @@
    one sub-aperture gives 21 dB. */
 #include "wavenumber/wk.h"
 
-static const char *const curvature_names[] = {"off", "on", NULL};
+static const char *const curvature_names[] = {"off", "on", NULL}, *const band_names[] = {"narrow", "wide", NULL};
 
 static const struct param params[] = {
     {PARAM(struct wk_options, subapertures), .summary = "of the filter; 0: as few as need no upsampling", .initial = 4,
      .min = 0, .max = 4096, .sweep = "1 2 4 8 0"},
     {PARAM_NAMED(struct wk_options, curvature, curvature_names),
      .summary = "remove the wavefronts' curvature ahead of the mask", .initial = 0, .max = 1, .sweep = "off on"},
+    {PARAM_NAMED(struct wk_options, band, band_names),
+     .summary = "of the filter's mapping: the carrier's, or each frequency's own", .max = 1, .terse = true},
     WK_TAPS_PARAM,
     {.name = NULL},
 };

@@ -18,9 +18,10 @@ static const struct param params[] = {
     {PARAM(struct wk_options, pad), .summary = "length of the azimuth transform over the pings", .initial = 1.5,
      .min = 1, .max = 4, .sweep = "1 1.25 1.5 2"},
     {PARAM_NAMED(struct wk_options, window, windows), .summary = "of the interpolations' taps; none: a truncated sinc",
-     .max = 1},
+     .max = 1, .terse = true},
     {PARAM_NAMED(struct wk_options, weighting, weightings),
-     .summary = "of the azimuth spectrum: lower side lobes, and another image than the others'", .max = 1},
+     .summary = "of the azimuth spectrum: lower side lobes, and another image than the others'", .max = 1,
+     .terse = true},
     {.name = NULL},
 };
 

@@ -1,5 +1,5 @@
-/* Tables and loops of the conversion (monostatic.h). Compiled once for each precision. */
-#include "wavenumber/monostatic.h"
+/* Tables and loops of the conversion (monostatic_plan.h). Compiled once for each precision. */
+#include "wavenumber/monostatic_plan.h"
 
 #include <omp.h>
 

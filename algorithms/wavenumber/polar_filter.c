@@ -18,26 +18,39 @@ enum {
 
 /* One sub-aperture, in rows of the upsampled field. */
 struct aperture {
-    int begin, end, length; /* length: of its padded transform */
-    double x, sine, rho;    /* m: its middle; of the area's centre seen from there */
-    FFTW(plan) forward, inverse;
+    int begin, end, length;      /* length: of its padded transform */
+    double x, sine, rho;         /* m: its middle; of the area's centre seen from there */
+    FFTW(plan) forward, inverse; /* wide band: of chirp transforms, `chirp` long */
+    int chirp, lines;            /* lines: wavenumbers, a period of them at any frequency */
 };
 
 struct polar_filter {
     const struct acquisition *acquisition;
     struct polar_shape shape;
-    bool curvature;
+    bool curvature, is_wide;
     double spacing, kc, slope;  /* m, signed; 2 pi fc/c; of the beam's axis */
     int pings, samples, length; /* length: of the range transform */
     int up, rows;               /* rows of the field: up x pings */
     double *delay;              /* [rows] s: delay of the area's centre */
     struct aperture *apertures;
     complex_real *field;   /* [rows][length] */
+    complex_real *wide;    /* wide band: [wavenumbers of a sub-aperture][length] */
     complex_real *scratch; /* [threads][scratch_length] */
     size_t scratch_length;
     FFTW(plan) range_forward, range_inverse, track_forward, track_inverse;
     struct store store;
 };
+
+/* Wavenumbers of `rows`, padded to twice as many at the carrier: a period at the lowest frequency. */
+static int wide_lines(const struct acquisition *a, int rows)
+{
+    return 2 * (int)ceil(rows / (1 - a->fs / (2 * a->fc)));
+}
+
+static int chirp_length(int rows, int lines)
+{
+    return fft_length_fast(rows + lines);
+}
 
 static void plan_apertures(struct polar_filter *f)
 {
@@ -52,9 +65,18 @@ static void plan_apertures(struct polar_filter *f)
         p->sine = polar_filter_sine(a, p->x);
         p->rho = hypot(a->area.x - p->x, a->area.r);
         p->length = 2 * (p->end - p->begin);
+        double all = (double)p->length * f->length;
+        if (f->is_wide) {
+            p->lines = wide_lines(f->acquisition, p->end - p->begin);
+            p->chirp = chirp_length(p->end - p->begin, p->lines);
+            p->forward = fft_line(&f->store, p->chirp, f->scratch, f->scratch, FFTW_FORWARD);
+            p->inverse = fft_line(&f->store, p->chirp, f->scratch, f->scratch, FFTW_BACKWARD);
+            f->shape.flops += f->length * 2 * (3 * fft_flops(p->chirp) + 18.0 * p->chirp)
+                              + (2.0 * p->lines + p->length) * fft_flops(f->length) + all * 2;
+            continue;
+        }
         p->forward = fft_strip(&f->store, p->length, STRIP, f->scratch, f->scratch, FFTW_FORWARD);
         p->inverse = fft_strip(&f->store, p->length, STRIP, f->scratch, f->scratch, FFTW_BACKWARD);
-        double all = (double)p->length * f->length;
         f->shape.flops += f->length * 2 * fft_flops(p->length) + all * 2;
     }
 }
@@ -62,13 +84,18 @@ static void plan_apertures(struct polar_filter *f)
 static bool plan_memory(struct polar_filter *f, int threads)
 {
     const struct acquisition *a = f->acquisition;
-    size_t strip = STRIP * 3 * (size_t)f->rows,
-           line = (size_t)f->length; /* a padded sub-aperture; both track transforms */
-    f->scratch_length = (strip > line ? strip : line) + ALIGNMENT;
+    const size_t strip = STRIP * 3 * (size_t)f->rows; /* a padded sub-aperture; both track transforms */
+    const int rows = f->up * ((f->pings + f->shape.subapertures - 1) / f->shape.subapertures);
+    const int lines = wide_lines(f->acquisition, rows);
+    const size_t chirps = f->is_wide ? 3 * ((size_t)chirp_length(rows, lines) + ALIGNMENT) : 0;
+    f->scratch_length = (strip > (size_t)f->length ? strip : (size_t)f->length) + ALIGNMENT;
+    f->scratch_length = f->scratch_length > chirps ? f->scratch_length : chirps;
     f->scratch_length = f->scratch_length / ALIGNMENT * ALIGNMENT;
     f->apertures = store_take(&f->store, (size_t)f->shape.subapertures, sizeof *f->apertures, 1);
     f->delay = store_take(&f->store, (size_t)f->rows, sizeof *f->delay, 1);
     f->field = store_take(&f->store, (size_t)f->rows * (size_t)f->length, sizeof *f->field, 1);
+    if (f->is_wide)
+        f->wide = store_take(&f->store, (size_t)lines * (size_t)f->length, sizeof *f->wide, 1);
     f->scratch = store_take(&f->store, (size_t)threads, f->scratch_length * sizeof *f->scratch, 1.0 / threads);
     if (f->store.failed)
         return false;
@@ -100,6 +127,7 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
         return status_set(STATUS_FAILED, "no memory for the polar-format filter");
     *f = (struct polar_filter){.acquisition = a,
                                .curvature = setting->curvature,
+                               .is_wide = setting->wide,
                                .spacing = track.spacing,
                                .kc = 2 * M_PI * a->fc / a->sound_speed,
                                .slope = sin(a->echo_squint),
@@ -114,6 +142,11 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
         status = status_set(STATUS_UNSUPPORTED,
                             "polar-format filter: condition subapertures: %d sub-apertures of %d pings; at most %d",
                             f->shape.subapertures, a->pings, most);
+    if (status == STATUS_OK && setting->wide && !(a->fs < a->fc))
+        status = status_set(STATUS_UNSUPPORTED,
+                            "polar-format filter: condition band: the sampling rate over the carrier is %.3g; below 1 "
+                            "is needed (cure: band=narrow)",
+                            a->fs / a->fc);
     if (status == STATUS_OK && !((up = polar_filter_upsampling(a, f->shape.subapertures)) <= UPSAMPLING_MOST))
         status = status_set(STATUS_UNSUPPORTED,
                             "polar-format filter: condition upsampling: %d sub-apertures need %g times upsampling; at "
@@ -235,32 +268,133 @@ static void upsample(const struct polar_filter *f)
     }
 }
 
-/* The mask (PF05 Eq. (16)) on a strip of samples of one sub-aperture's polar-format image, in place. */
-static void mask_strip(const struct polar_filter *f, const struct aperture *p, int first, int width)
+/* The sine of psi at wavenumber q, which is ambiguous by whole periods: the one about the beam's axis. */
+static double sine_at(const struct polar_filter *f, const struct aperture *p, int q)
+{
+    const double period = 2 * M_PI * f->up / fabs(f->spacing) / (2 * f->kc);
+    const double sine = (f->spacing < 0 ? -q : q) * period / p->length + p->sine - f->slope;
+    return sine + f->slope - period * floor(sine / period + 0.5);
+}
+
+/* The mask (PF05 Eq. (16)): `count` samples at wavenumber q, from sample `first` on. */
+static void mask_line(const struct polar_filter *f, const struct aperture *p, int q, int first, int count,
+                      complex_real *line)
 {
     const struct target_area *area = &f->acquisition->area;
+    const double sine = sine_at(f, p, q), cosine = sqrt(fmax(1 - sine * sine, 0));
+    for (int k = 0; k < count; k++) {
+        const double r = range_at(f, p, first + k);
+        if (!(fabs(sine) < 1 && r > 0 && fabs(r * cosine - area->r) < area->half_r
+              && fabs(p->x + r * sine - area->x) < area->half_x))
+            line[k] = 0;
+    }
+}
+
+/* A strip of samples of one sub-aperture's polar-format image, in place. */
+static void mask_strip(const struct polar_filter *f, const struct aperture *p, int first, int width)
+{
     const size_t length = (size_t)f->length, count = (size_t)(p->end - p->begin);
     complex_real *wave = scratch_of(f), *field = f->field + (size_t)p->begin * length + (size_t)first;
     for (size_t i = 0; i < count; i++)
         memcpy(wave + i * STRIP, field + i * length, (size_t)width * sizeof *wave);
     memset(wave + count * STRIP, 0, ((size_t)p->length - count) * STRIP * sizeof *wave);
     FFTW(execute_dft)(p->forward, wave, wave);
-    /* sin psi is ambiguous by whole periods: take the one about the beam's axis. */
-    const double period = 2 * M_PI * f->up / fabs(f->spacing) / (2 * f->kc), step = period / p->length;
-    for (int q = 0; q < p->length; q++) {
-        double sine = (f->spacing < 0 ? -q : q) * step + p->sine - f->slope;
-        sine += f->slope - period * floor(sine / period + 0.5);
-        double cosine = sqrt(fmax(1 - sine * sine, 0));
-        for (int k = 0; k < width; k++) {
-            double r = range_at(f, p, first + k);
-            if (!(fabs(sine) < 1 && r > 0 && fabs(r * cosine - area->r) < area->half_r
-                  && fabs(p->x + r * sine - area->x) < area->half_x))
-                wave[(size_t)q * STRIP + (size_t)k] = 0;
-        }
-    }
+    for (int q = 0; q < p->length; q++)
+        mask_line(f, p, q, first, width, wave + (size_t)q * STRIP);
     FFTW(execute_dft)(p->inverse, wave, wave);
     for (size_t i = 0; i < count; i++)
         memcpy(field + i * length, wave + i * STRIP, (size_t)width * sizeof *wave);
+}
+
+/* ---- the wide band ---- */
+
+static void turn(complex_real *value, double cycles)
+{
+    real c, s;
+    phasor((real)(cycles - floor(cycles + 0.5)), &c, &s);
+    *value *= c + s * (complex_real)I;
+}
+
+/* Wavenumbers from `first` on, `ratio` times those of the carrier, of the rows about the sub-aperture's middle:
+   exponents  first (i - middle) + a (i - middle),  where a i = (a^2 + i^2 - (a - i)^2)/2 makes it a convolution. Onto
+   the wavenumbers (sign -1), or back (1). Values in `wave`, which has room for three lines. */
+static void chirp(const struct aperture *p, int first, double ratio, int sign, complex_real *wave)
+{
+    const int rows = p->end - p->begin, from = sign < 0 ? rows : p->lines, onto = sign < 0 ? p->lines : rows;
+    const double scale = sign * ratio / p->length, middle = (rows - 1) / 2.0;
+    complex_real *kernel = wave + (p->chirp + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    memset(wave + from, 0, (size_t)(p->chirp - from) * sizeof *wave);
+    memset(kernel, 0, (size_t)p->chirp * sizeof *kernel);
+    for (int n = 1 - from; n < onto; n++) {
+        complex_real *value = &kernel[n < 0 ? n + p->chirp : n];
+        *value = (real)1 / (real)p->chirp;
+        turn(value, -scale * 0.5 * n * (double)n);
+    }
+    for (int side = 0; side < 2; side++) { /* ahead of the convolution, and behind it */
+        const bool along_rows = (side == 0) == (sign < 0);
+        for (int n = 0; n < (along_rows ? rows : p->lines); n++)
+            turn(&wave[n], scale * (0.5 * n * (double)n + (along_rows ? first * (n - middle) : -middle * n)));
+        if (side == 1)
+            return;
+        FFTW(execute_dft)(p->forward, wave, wave);
+        FFTW(execute_dft)(p->forward, kernel, kernel);
+        for (int n = 0; n < p->chirp; n++)
+            wave[n] *= kernel[n];
+        FFTW(execute_dft)(p->inverse, wave, wave);
+    }
+}
+
+/* A column of one frequency, between the field and the wide image. */
+static void chirp_column(const struct polar_filter *f, const struct aperture *p, int first, int k, int sign)
+{
+    const struct acquisition *a = f->acquisition;
+    const size_t length = (size_t)f->length, rows = (size_t)(p->end - p->begin), lines = (size_t)p->lines;
+    const double ratio = 1 + (2 * k < f->length ? k : k - f->length) * a->fs / f->length / a->fc;
+    const real scale = sign < 0 ? 1 : (real)ratio / ((real)f->length * (real)f->length);
+    complex_real *wave = scratch_of(f), *field = f->field + (size_t)p->begin * length + (size_t)k;
+    complex_real *wide = f->wide + k, *from = sign < 0 ? field : wide, *onto = sign < 0 ? wide : field;
+    for (size_t n = 0; n < (sign < 0 ? rows : lines); n++)
+        wave[n] = from[n * length];
+    chirp(p, first, ratio, sign, wave);
+    for (size_t n = 0; n < (sign < 0 ? lines : rows); n++) {
+        const double period = ratio * fabs((double)n - p->lines / 2); /* of wavenumbers, of which one counts */
+        onto[n * length] = sign > 0 || 2 * period < p->length ? wave[n] * scale : 0;
+    }
+}
+
+static void rows_transform(const struct polar_filter *f, const struct aperture *p, FFTW(plan) plan)
+{
+#pragma omp parallel for schedule(static)
+    for (int i = p->begin; i < p->end; i++) {
+        complex_real *wave = scratch_of(f), *row = f->field + (size_t)i * (size_t)f->length;
+        memcpy(wave, row, (size_t)f->length * sizeof *wave);
+        FFTW(execute_dft)(plan, wave, wave);
+        memcpy(row, wave, (size_t)f->length * sizeof *wave);
+    }
+}
+
+/* The mask on an image whose wavenumbers grow with the frequency, so that a target has one place at all of them. */
+static void mask_wide(const struct polar_filter *f, const struct aperture *p)
+{
+    const double step = 2 * M_PI * f->up / f->spacing / (2 * f->kc) / p->length;
+    const int first = (int)floor((f->slope - p->sine) / step + 0.5) - p->lines / 2;
+    rows_transform(f, p, f->range_forward);
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < f->length; k++)
+        chirp_column(f, p, first, k, -1);
+#pragma omp parallel for schedule(static)
+    for (int n = 0; n < p->lines; n++) {
+        complex_real *wave = scratch_of(f), *line = f->wide + (size_t)n * (size_t)f->length;
+        memcpy(wave, line, (size_t)f->length * sizeof *wave);
+        FFTW(execute_dft)(f->range_inverse, wave, wave);
+        mask_line(f, p, first + n, 0, f->length, wave);
+        FFTW(execute_dft)(f->range_forward, wave, wave);
+        memcpy(line, wave, (size_t)f->length * sizeof *wave);
+    }
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < f->length; k++)
+        chirp_column(f, p, first, k, 1);
+    rows_transform(f, p, f->range_inverse);
 }
 
 static void mask(const struct polar_filter *f, const struct aperture *p)
@@ -275,6 +409,10 @@ static void mask(const struct polar_filter *f, const struct aperture *p)
         if (f->curvature)
             curve(f, p, i, 1, (real *)wave);
         memcpy(row, wave, (size_t)f->length * sizeof *wave);
+    }
+    if (f->is_wide) {
+        mask_wide(f, p);
+        return;
     }
 #pragma omp parallel for schedule(static)
     for (int s = 0; s < strips; s++)

@@ -12,6 +12,11 @@
    about x_s. With curvature=on the quadratic term is removed for each range, exp(+j k_c u^2 (1/R - 1/rho)) in (u, t),
    and restored after the mask: one sub-aperture then replaces the paper's four.
 
+   PF05's k/(2 k_c) is that of the carrier, and a target's place moves with the frequency, by x B/fc over the band. The
+   wide band's mapping (PF05 section 5) takes k/(2 k) at each frequency: a chirp transform along the track, in place of
+   the FFT, onto wavenumbers that grow with it. That is the interpolation which
+   the paper asks for; without a mask it changes echoes by 5e-3 (relative L2).
+
    Removing the centre's delay widens the azimuth band. So echoes are upsampled along the track (1, 2, 4, ... times): k
    spans 2 k_c (beam + the centre's own sines over a sub-aperture). */
 #ifndef SASBENCH_WAVENUMBER_POLAR_FILTER_H
@@ -24,6 +29,7 @@ struct polar_filter; /* the plan */
 struct polar_setting {
     int subapertures; /* 0: as few as need no upsampling */
     bool curvature;
+    bool wide; /* the wide band's mapping */
 };
 
 struct polar_shape {

@@ -41,6 +41,7 @@ struct wk_options {
     double pad;       /* rotated axes: length of the azimuth transform over the pings */
     int subapertures; /* of the filter; 0: as many as need no upsampling */
     int curvature;    /* 1: the filter removes the wavefronts' curvature */
+    int band;         /* 1: the filter maps the wide band */
     int window;       /* of the interpolations: 0 Kaiser; 1 none, a truncated sinc */
     int weighting;    /* of the azimuth spectrum: 0 none; 1 Hamming, an image of another main lobe */
 };
@@ -67,8 +68,8 @@ enum status wk_plan(const struct problem *problem, const void *method, const voi
 /* A method that rotates needs a slower platform; one that filters has a condition on the loss of its own targets. */
 int wk_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                   int room);
-/* Errors alone: INFINITY with a filter, without a window or with weights, and with turned axes if the azimuth transform is padded less than 1.25 times.
-   Errors: as wk_plan. */
+/* Errors alone: INFINITY with a filter, without a window or with weights, and with turned axes if the azimuth transform
+   is padded less than 1.25 times. Errors: as wk_plan. */
 enum status wk_forecast(const struct problem *problem, const void *method, const void *options,
                         struct forecast *forecast);
 /* The counts alone. */

@@ -158,7 +158,8 @@ int wk_conditions(const struct problem *problem, const void *method, const void 
     const struct acquisition *a = problem->acquisition;
     int count = refusals(problem, m, list, room);
     if (m->filters && count < room && a->area.half_x > 0 && polar_filter_check(a, m->name) == STATUS_OK)
-        list[count++] = polar_filter_kept(a, &(struct polar_setting){given->subapertures, given->curvature});
+        list[count++] =
+            polar_filter_kept(a, &(struct polar_setting){given->subapertures, given->curvature, given->band});
     return count;
 }
 

@@ -17,7 +17,8 @@ static const double EDGE_BINS = 1; /* at either end of the band, that are interp
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
-/* Without a window, or with weights, there is no law. Else of all interpolations of the spectrum, and of the image where it is resampled along both its axes. */
+/* Without a window, or with weights, there is no law. Else of all interpolations of the spectrum, and of the image
+   where it is resampled along both its axes. */
 static double interpolations_error(const struct wk *wk)
 {
     const double padded = (double)wk->azimuth_length / wk->pings;

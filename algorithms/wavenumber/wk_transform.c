@@ -76,8 +76,8 @@ static void weights_fill(struct wk *wk)
     }
 }
 
-/* The weight of a line of the spectrum: one, or a Hamming window over the beam: that of the echoes, or the transmitter's
-   down to its half power. */
+/* The weight of a line of the spectrum: one, or a Hamming window over the beam: that of the echoes, or the
+   transmitter's down to its half power. */
 static double line_weight(const struct wk *wk, double kx)
 {
     const struct acquisition *a = wk->problem.acquisition;
@@ -195,7 +195,7 @@ static enum status plan_compression(struct wk *wk)
     if (status != STATUS_OK || !wk->method.filters || !(a->area.half_x > 0))
         return status;
     struct polar_shape filter;
-    const struct polar_setting setting = {wk->options.subapertures, wk->options.curvature};
+    const struct polar_setting setting = {wk->options.subapertures, wk->options.curvature, wk->options.band};
     status = REAL_NAME(polar_filter_plan)(a, &setting, wk->threads, &filter, &wk->filter);
     if (status != STATUS_OK)
         return status;

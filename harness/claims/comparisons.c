@@ -237,6 +237,11 @@ enum status comparisons_read(struct formula *formula, const char *column, const 
     do {
         char checks[sizeof evaluation->evidence] = "";
         enum answer answer;
+        formula_blanks(formula);
+        if (!strict && !comparison_decides(formula->at)) { /* what no part holds is open */
+            evaluation->verdict = decided ? evaluation->verdict : CLAIM_UNDECIDED;
+            return STATUS_OK;
+        }
         enum status status = part_read(formula, &answer, word, checks, sizeof checks);
         if (status != STATUS_OK)
             return status;

@@ -48,7 +48,7 @@ static enum status check_usage(const struct task *task)
     if (task->spec_count > 1 || (task->spec_count == 1 && strcmp(task->specs[0].algorithm->name, "wk_polar") != 0))
         return status_set(STATUS_INVALID,
                           "filter: %d --algorithm SPEC given, the last is %s; accepted: one of "
-                          "wk_polar:subapertures=...,curvature=...",
+                          "wk_polar:subapertures=...,curvature=...,band=...",
                           task->spec_count, task->specs[task->spec_count - 1].algorithm->name);
     return output_check("filter", task->output);
 }

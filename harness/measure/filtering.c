@@ -20,7 +20,7 @@ void filtering_close(struct filtering *filtering)
 enum status filtering_open(const struct acquisition *acquisition, const struct spec *spec, struct filtering *filtering)
 {
     const struct wk_options *options = spec->options;
-    const struct polar_setting setting = {options->subapertures, options->curvature};
+    const struct polar_setting setting = {options->subapertures, options->curvature, options->band};
     const struct traces_form form = {.upsample = 1};
     struct traces_shape shape;
     *filtering = (struct filtering){.acquisition = acquisition};

@@ -54,8 +54,8 @@ double measured_value(struct measured *measured, const char *scene, const char *
 /* Seconds of one stage of the measurement ("compress"). */
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage);
 
-/* A field of the azimuth slice through a target (from 0) by a definition ("pixel"), or of the "range" slice; `name` is for
-   messages. */
+/* A field of the azimuth slice through a target (from 0) by a definition ("pixel"), or of the "range" slice; `name` is
+   for messages. */
 double measured_target(struct measured *measured, const char *scene, const char *spec, int target,
                        const char *definition, size_t offset, const char *name);
 

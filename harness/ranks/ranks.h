@@ -11,8 +11,8 @@
 
 /* How many processes did mpirun, or srun, begin together? From the environment; 1: by itself. */
 int ranks_started(void);
-/* Call it ahead of a refusal's message. Before they join, each finds the same fault: rank 0 shows it, and its end ends the
-   others, which wait for that here. Returns true. */
+/* Call it ahead of a refusal's message. Before they join, each finds the same fault: rank 0 shows it, and its end ends
+   the others, which wait for that here. Returns true. */
 bool ranks_refuse(void);
 /* Join the others, once, ahead of the first child. Errors: STATUS_INVALID where this build is without MPI, and where
    the ranks run different programs, numbers of threads, or kinds of machine, whose times are not compared. */

@@ -241,7 +241,7 @@ static void comparisons_are_joined(void **state)
         "a = 3, b = 2, v = 1 to 3 (median 2); criterion: a criterion; 3 above 9: no; 2 from 3 by at "
         "most 0.5: no; 1 to 3 above 0: yes; settings: bp_nearest, bp_linear:beta=8; scenes: bp22/speckle (c "
         "1500 m/s, beam rect cut by the middle angle at 0.405), bp22/many (c 1500 m/s, beam rect cut by the "
-        "middle angle at 0.405); azimuth slices: pixel");
+        "middle angle at 0.405); slices: pixel");
     assert_non_null(strstr(comparison("undecided", LANGUAGE_A, &measured).evidence,
                            "a = 3, b = 2; no criterion: a criterion; settings: "));
     planted_clear(&measured);

@@ -174,19 +174,19 @@ static void nothing_is_said_without_measurements(void **state)
 /* A measurement of everything that a table may want of this need, and all its targets. */
 static void need_plant(const struct need *need)
 {
-    static const char *const definitions[] = {"null", "3db", "pixel"};
+    static const char *const definitions[] = {"null", "3db", "pixel", "null"}; /* the last one along range */
     struct spec spec;
     struct scene scene;
     assert_int_equal(assumed_scene_load(need->scene, &scene), STATUS_OK);
-    assert_int_equal(spec_parse(need->spec, &spec), STATUS_OK);
+    assert_int_equal(spec_own(need->spec, &spec), STATUS_OK);
     for (int target = 0; target < scene.point_count; target++)
-        for (int d = 0; d < 3; d++) {
+        for (int d = 0; d < 4; d++) {
             struct target_row row = {need->scene,
                                      spec.algorithm->name,
                                      spec.text,
                                      precision_name(spec.precision),
                                      target,
-                                     "azimuth",
+                                     d < 3 ? "azimuth" : "range",
                                      definitions[d],
                                      3,
                                      0,

@@ -71,7 +71,8 @@ static void kill_after(const char *const *arguments, double seconds)
     fclose(sink);
 }
 
-/* A part of a run, as a signal leaves it: killed once `least` tiles are there. Another begins where one came to its end. */
+/* A part of a run, as a signal leaves it: killed once `least` tiles are there. Another begins where one came to its
+   end. */
 static void image_begin(const char *spec, const char *tile, int least)
 {
     const char *const arguments[ARGUMENTS_MAX] = {IMAGE(spec, "x.mat"), "--tile", tile};

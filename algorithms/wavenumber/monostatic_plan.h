@@ -10,8 +10,8 @@
 
    by taps of least squares (range_migration/delay_compensation.h). Exact along the axis, at any range; off it the phase
    is wrong by about pi fc d^2 (cos^2 theta' - cos^2 theta)/(2 c r). */
-#ifndef SASBENCH_WAVENUMBER_MONOSTATIC_H
-#define SASBENCH_WAVENUMBER_MONOSTATIC_H
+#ifndef SASBENCH_WAVENUMBER_MONOSTATIC_PLAN_H
+#define SASBENCH_WAVENUMBER_MONOSTATIC_PLAN_H
 
 #include "common/memory.h"
 #include "contract/algorithm.h"
