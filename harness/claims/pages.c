@@ -238,8 +238,7 @@ static void quantity_write(const struct csv *csv, const char *table, const char 
         fprintf(stream, " %s |", definitions[d]);
     fputs("\n|---|---|", stream);
     for (int d = 0; d < count; d++)
-        fputs("---|", stream);
-    fputc('\n', stream);
+        fputs(d < count - 1 ? "---|" : "---|\n", stream);
     for (int k = 0; k < item_count; k++) {
         const int first = number_next(csv, 0, (const char *const[N_UNIT]){table, items[k], quantity});
         const double paper = number_of(csv, first, N_PAPER);
@@ -247,7 +246,8 @@ static void quantity_write(const struct csv *csv, const char *table, const char 
         for (int d = 0; d < count; d++) {
             const int row = number_next(csv, 0, (const char *const[N_UNIT]){table, items[k], quantity, definitions[d]});
             const double ours = row < 0 ? NAN : number_of(csv, row, N_OURS);
-            fprintf(stream, isfinite(ours) ? " %.5g" : row < 0 ? "" : " no value", ours);
+            if (row >= 0)
+                fprintf(stream, isfinite(ours) ? " %.5g" : " no value", ours);
             fprintf(stream, isfinite(ours - paper) ? " (%+.2g) |" : " |", ours - paper);
         }
         fputc('\n', stream);
