@@ -160,7 +160,7 @@ static enum status chain_plan(const struct problem *problem, const void *method,
 
 static bool same(const void *a, const void *b, size_t count, size_t size)
 {
-    return memcmp(a, b, count * size) == 0;
+    return count == 0 || memcmp(a, b, count * size) == 0;
 }
 
 /* Has the filter changed what its echoes are? *now is the acquisition then, else freed. */
