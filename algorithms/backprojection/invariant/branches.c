@@ -78,17 +78,18 @@ INLINE void sum_block(int branches, const struct chunk *chunk, const struct bp_r
     }
 }
 
-/* All columns, in blocks of equal width whose sums stay in the cache. */
+/* The wanted columns, in blocks of equal width whose sums stay in the cache. No others: their pings need not be there. */
 INLINE void sum_branches(int branches, const struct chunk *shared)
 {
     const struct chunk own_chunk = *shared, *chunk = &own_chunk;
     const struct bp_row_scratch own_scratch = *chunk->scratch, *scratch = &own_scratch;
-    const int columns = chunk->raster->residue_columns, vectors = (columns + LANES - 1) / LANES;
+    const int columns = chunk->raster->residue_columns, wanted = chunk->raster->shown.end;
+    const int begin = chunk->raster->shown.begin / LANES * LANES, vectors = (wanted - begin + LANES - 1) / LANES;
+    const int end = columns < begin + vectors * LANES ? columns : begin + vectors * LANES;
     const int most = BLOCK_VECTORS * BP_TOGETHER_BRANCHES / scratch->groups[chunk->begin].residues;
     const int parts = (vectors + most - 1) / most, width = (vectors + parts - 1) / parts * LANES;
-    for (int j = 0; j < columns; j += width)
-        if (j < chunk->raster->shown.end && j + width > chunk->raster->shown.begin)
-            sum_block(branches, chunk, scratch, j, columns < j + width ? columns : j + width);
+    for (int j = begin; j < end; j += width)
+        sum_block(branches, chunk, scratch, j, end < j + width ? end : j + width);
 }
 
 /* Of each count of branches a function of its own. */

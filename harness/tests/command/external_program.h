@@ -62,8 +62,8 @@ static const char bad_py[] =
 static const struct {
     const char *kind, *status, *reason;
 } lost[] = {
-    {"silent", "failed", "was silent for 1 s during `plan` (--timeout)"},
-    {"hang", "failed", "was silent for 1 s during `execute` (--timeout)"},
+    {"silent", "failed", "was silent for 5 s during `plan` (--timeout)"},
+    {"hang", "failed", "was silent for 5 s during `execute` (--timeout)"},
     {"eof", "failed", "closed its descriptor 4 during `plan`"},
     {"exit", "failed", "ended with exit status 3 during `plan`"},
     {"raise", "failed", "status 1 during `plan`; it printed last: ValueError: no such? thing"},

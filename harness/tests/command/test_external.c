@@ -47,7 +47,7 @@ static void faults_lose_their_row(void **state)
     struct csv csv;
     for (size_t k = 0; k < COUNT_OF(lost); k++)
         snprintf(specs + strlen(specs), sizeof specs - strlen(specs), " -a 'external:python3 bad.py %s'", lost[k].kind);
-    specs_run("--timeout 1", specs, "faults");
+    specs_run("--timeout 5", specs, "faults");
     assert_int_equal(csv_read(path_in("faults/measurements.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
     assert_string_equal(cell_of(&csv, "bp_nearest", "status"), "ok");
     assert_string_equal(cell_of(&csv, "external:./absent", "status"), "failed");
