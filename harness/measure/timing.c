@@ -284,6 +284,7 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     if (status == STATUS_OK) {
         const struct work *work = &timing->work;
         struct work_bounds bounds = work_bounds(spec->algorithm, spec->options, problem, work);
+        const bool empty = bounds.pairs <= 0;
         double sorted[TIMING_CONTROLS];
         timing->drift = after / before - 1;
         for (int k = 0; k < samples->controls; k++)
@@ -293,7 +294,10 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
         if (spec->algorithm->traits & TRAIT_FILTERED) /* a chain checks its last link's least */
             bounds = (struct work_bounds){.pairs = work->pairs};
         bounds.flops_most = FLOPS_MOST * omp_get_max_threads() * timing->run_min_s;
-        if (timing->run_min_s <= 0 || timing->control_s <= 0)
+        if (empty)
+            status = status_set(STATUS_UNSUPPORTED, "no ping and pixel meet within beam, aperture and record: "
+                                                    "there is nothing to image");
+        else if (timing->run_min_s <= 0 || timing->control_s <= 0)
             status = status_set(STATUS_FAILED,
                                 "a run of %s takes %g s, of the scalar reference loop %g s: the system's "
                                 "clock stands still",

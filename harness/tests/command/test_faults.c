@@ -354,6 +354,17 @@ static void filtered_echoes_are_whole(void **state)
     assert_nothing_temporary();
 }
 
+/* An aperture that ends before each pixel's: a reason, and no image of zeros. */
+static void scenes_without_pairs_are_refused(void **state)
+{
+    (void)state;
+    support_write("none.cfg", "base = {\n@include \"study/quick.cfg\"\n};\naperture_limit = 0.05;\n"
+                              "image = { x = { first = 12.0; step = 0.01; count = 10; };\n"
+                              "          r = { first = 16.5; step = 0.01; count = 10; }; };\n");
+    assert_shell("\"$SASBENCH_PROGRAM\" run none.cfg -a bp_nearest -o r", 0);
+    assert_shell("grep -q 'unsupported.*no ping and pixel meet within beam' r/measurements.csv", 0);
+}
+
 int main(void)
 {
     if (setenv("ROOT", SASBENCH_ROOT, 1) != 0)
@@ -373,6 +384,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(sweeps_that_lack_pictures, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(reports_on_full_disks, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(late_reasons, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(scenes_without_pairs_are_refused, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(filtered_echoes_are_whole, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
