@@ -78,7 +78,7 @@ INLINE void sum_block(int branches, const struct chunk *chunk, const struct bp_r
     }
 }
 
-/* The wanted columns, in blocks of equal width whose sums stay in the cache. No others: their pings need not be there. */
+/* The wanted columns, in blocks of equal width whose sums stay in the cache. Others' pings may not be there. */
 INLINE void sum_branches(int branches, const struct chunk *shared)
 {
     const struct chunk own_chunk = *shared, *chunk = &own_chunk;
