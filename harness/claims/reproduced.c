@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "files/csv.h"
 #include "text/text_append.h"
@@ -15,11 +14,15 @@
 void reproduced_head(FILE *file, const char *what, const struct measured *measured)
 {
     const struct csv *csv = &measured->measurements.csv;
+    double load = NAN;
     fprintf(file, "# sasbench %s 1\n", what);
     for (int k = 0; k < csv->comment_count; k++)
         if (strncmp(csv->comments[k], "sasbench ", 9) != 0 && strncmp(csv->comments[k], "scene ", 6) != 0)
             fprintf(file, "# %s\n", csv->comments[k]);
-    fprintf(file, "# load: %.2f a processor (average of 15 minutes when evaluated)\n", measured->load);
+    for (int k = 0; k < csv->row_count; k++)
+        load = fmax(load, measured->measurements.measurements[k].load);
+    if (isfinite(load))
+        fprintf(file, "# load: at most %.2f ready processes while measured (the rows' column `load`)\n", load);
 }
 
 static void item_format(const struct reproduced *line, char *item, size_t size)
@@ -167,33 +170,12 @@ static void lines_keep(const struct selection *selection, struct reproduced *lin
     *count = kept;
 }
 
-/* The load of a processor over the last 15 minutes; 0 where the system does not report it. What was evaluated before
-   with the same program keeps its load: times measured on a busy machine do not improve on a quiet one. */
-static double load_average(const char *directory, const struct measured *measured)
-{
-    double loads[3], load = 0, before = 0;
-    char path[4200];
-    struct csv csv;
-    if (getloadavg(loads, 3) == 3)
-        load = loads[2] / (double)sysconf(_SC_NPROCESSORS_ONLN);
-    snprintf(path, sizeof path, "%s/claims.csv", directory);
-    if (access(path, R_OK) != 0 || csv_read(path, CSV_TAIL_KEEP, &csv) != STATUS_OK)
-        return load;
-    const char *program = csv_comment(&csv, "program"), *text = csv_comment(&csv, "load");
-    const char *ours = csv_comment(&measured->measurements.csv, "program");
-    if (program && ours && text && strcmp(program, ours) == 0) /* with another program all is measured again */
-        before = strtod(text, NULL);
-    csv_free(&csv);
-    return fmax(load, before);
-}
-
 enum status reproduced_report(const char *directory, const struct selection *selection)
 {
     struct measured measured;
     struct reproduced *lines = NULL;
     int count = 0;
     enum status status = measured_read(directory, &measured);
-    measured.load = status == STATUS_OK ? load_average(directory, &measured) : 0;
     if (status == STATUS_OK)
         status = tables_evaluate(&measured, selection->tables, &lines, &count);
     if (status == STATUS_OK) {

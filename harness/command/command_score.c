@@ -1,4 +1,5 @@
 /* The command `score`: an image that another program formed, measured as those of `run` are. */
+#include <complex.h>
 #include <ctype.h>
 #include <math.h>
 #include <omp.h>
@@ -99,6 +100,40 @@ static enum status row_add(struct results_folder *folder, const struct outcome *
     return status == STATUS_OK ? results_folder_add(folder, &outcome->row) : status;
 }
 
+/* Conjugates the image; was any of its pixels not real? */
+static bool conjugate(const struct image *image)
+{
+    bool is_complex = false;
+    for (int k = 0; k < image->patch_count; k++) {
+        const size_t count = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count;
+        float complex *single = image->pixels[k];
+        double complex *pixels = image->pixels[k];
+        for (size_t n = 0; n < count; n++)
+            if (image->precision == PRECISION_DOUBLE) {
+                is_complex |= cimag(pixels[n]) != 0;
+                pixels[n] = conj(pixels[n]);
+            } else {
+                is_complex |= cimagf(single[n]) != 0;
+                single[n] = conjf(single[n]);
+            }
+    }
+    return is_complex;
+}
+
+/* What foreign images most often lack is their phase, or its sign. */
+static void phase_warn(const struct image *image, const struct image *reference, double error)
+{
+    if (!conjugate(image)) {
+        puts("    warning: no pixel has an imaginary part: errors and phases are those of complex images");
+        return;
+    }
+    const double conjugated = metrics_error(image, reference).error_gain;
+    if (conjugated < error / 2)
+        printf("    warning: the image's complex conjugate has an error of %.2g after one gain: echoes here turn by "
+               "exp(-j 2 pi fc delay)\n",
+               conjugated);
+}
+
 static enum status score(const struct scene *scene, const char *name, double seconds, struct image *image,
                          struct results_folder *folder)
 {
@@ -117,6 +152,7 @@ static enum status score(const struct scene *scene, const char *name, double sec
         status = folder ? row_add(folder, &outcome) : STATUS_OK;
         table_begin(stdout, false);
         table_row(stdout, &outcome.row);
+        phase_warn(&outcome.image, &session.reference, outcome.row.error_gain);
         outcome_free(&outcome);
     }
     session_close(&session);

@@ -112,7 +112,7 @@ static enum status numbers_read(FILE *stream, const char *path, const struct arr
     return STATUS_OK;
 }
 
-enum status npy_pixels_read(FILE *stream, const char *path, bool flat, const struct image *image)
+enum status npy_pixels_read(FILE *stream, const char *path, const struct image *image)
 {
     struct array array;
     const struct grid *grid = image->patches;
@@ -122,7 +122,7 @@ enum status npy_pixels_read(FILE *stream, const char *path, bool flat, const str
     enum status status = head_read(stream, path, &array);
     if (status != STATUS_OK)
         return status;
-    const bool whole = flat && array.dimensions == 1 && array.shape[0] == (long long)all;
+    const bool whole = array.dimensions == 1 && array.shape[0] == (long long)all;
     if (!whole
         && (image->patch_count > 1 || array.dimensions == 1 || array.shape[0] != grid->r_count
             || array.shape[1] != grid->x_count)) {
@@ -157,7 +157,7 @@ enum status npy_image_read(const char *path, const struct grid *grid, struct ima
     enum status status = file->patches ? image_allocate(1, file->patches, PRECISION_DOUBLE, &file->image)
                                        : status_set(STATUS_FAILED, "%s: no memory for its grid", path);
     if (status == STATUS_OK)
-        status = npy_pixels_read(stream, path, false, &file->image);
+        status = npy_pixels_read(stream, path, &file->image);
     fclose(stream);
     if (status != STATUS_OK)
         image_file_close(file);

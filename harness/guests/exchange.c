@@ -127,7 +127,7 @@ enum status exchange_take(const struct exchange *exchange, const struct image *i
         close(file);
         return status_set(STATUS_INVALID, "image.npy is not a file");
     }
-    const enum status status = npy_pixels_read(stream, "image.npy", true, image);
+    const enum status status = npy_pixels_read(stream, "image.npy", image);
     fclose(stream);
     return status;
 }

@@ -32,7 +32,6 @@ struct measured {
     struct csv published;                 /* results/published.csv */
     struct scene_number numbers[192];     /* requested so far */
     int number_count;
-    double load;       /* load average a processor while times were measured; 0: not recorded */
     char missing[400]; /* the first missing value since this was last cleared */
 };
 

@@ -265,7 +265,7 @@ double table_seconds(struct measured *measured, enum scheme scheme, const char *
 double table_noise(const struct measured *measured, const char *id, const char *definition)
 {
     struct source source;
-    double noise = fmax(0.1, measured->load - 1), least = INFINITY, most = 0;
+    double noise = 0.1, least = INFINITY, most = 0;
     char scene[80] = "";
     for (int k = 0; source_at(k, &source); k++) {
         if (strcmp(source.table, id) != 0 || !source.definition

@@ -85,8 +85,7 @@ const char *source_place(const char *table, const char *target, int *index);
 double table_seconds(struct measured *measured, enum scheme scheme, const char *id, const char *method,
                      const char *definition);
 /* How far apart two times of a table may lie by chance, relative: the largest of a tenth, the scatter of one
-   method's runs, that of the scalar reference loop beside the methods of one scene, and the machine's load above one
-   a processor. */
+   method's runs, and that of the scalar reference loop beside the methods of one scene. */
 double table_noise(const struct measured *measured, const char *id, const char *definition);
 
 /* Is there such a time? -1, or which of the three texts (from 0) does not exist; `accepted` then lists those that

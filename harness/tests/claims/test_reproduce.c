@@ -364,22 +364,6 @@ static void unknown_table_is_refused(void **state)
     assert_int_not_equal(access(results, F_OK), 0);
 }
 
-/* Times that were measured on a busy machine stay noisy when they are evaluated again on a quiet one. */
-static void load_is_kept(void **state)
-{
-    (void)state;
-    const char *const names[] = {"lbf21-3A-1"};
-    const struct task task = {.names = names, .name_count = 1, .output = folder};
-    assert_int_equal(command_reproduce(&task), STATUS_OK);
-    char *text = strdup(text_read("claims.csv")), *load = strstr(text, "\n# load: ");
-    assert_non_null(load);
-    memcpy(load + 9, "77", 2);
-    support_write("claims.csv", text);
-    assert_int_equal(command_reproduce(&task), STATUS_OK);
-    assert_non_null(strstr(text_read("claims.csv"), "\n# load: 77"));
-    free(text);
-}
-
 /* The papers' targets by their names, and those that our scenes add. */
 static void layouts_are_drawn(void **state)
 {
@@ -442,7 +426,6 @@ int main(void)
         IN_FOLDER(times_are_scaled),
         IN_FOLDER(unknown_table_is_refused),
         IN_FOLDER(finished_measurements_are_kept),
-        IN_FOLDER(load_is_kept),
         IN_FOLDER(layouts_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -23,18 +23,25 @@ static double cell(const char *file, const char *column)
     return value;
 }
 
-/* The pixels as NumPy writes them, by rows in float, or by columns in double. */
-static void npy_write(const char *name, const struct image *image, bool columns)
+enum layout { ROWS, ONE_ROW, COLUMNS };
+
+/* The pixels as NumPy writes them, by rows in float, also as one row, or by columns in double. */
+static void npy_write(const char *name, const struct image *image, enum layout layout)
 {
+    const bool columns = layout == COLUMNS;
     const struct grid *grid = &image->patches[0];
     const size_t size = columns ? sizeof(double complex) : sizeof(float complex);
     unsigned char *bytes = calloc(128 + (size_t)grid->r_count * (size_t)grid->x_count, size);
     assert_non_null(bytes);
     memcpy(bytes, "\x93NUMPY\1\0\x76\0", 10);
     memset(bytes + 10, ' ', 118);
-    char text[100];
-    const int length = snprintf(text, sizeof text, "{'descr': '<c%zu', 'fortran_order': %s, 'shape': (%d, %d), }", size,
-                                columns ? "True" : "False", grid->r_count, grid->x_count);
+    char shape[40], text[100];
+    if (layout == ONE_ROW)
+        snprintf(shape, sizeof shape, "%d,", grid->r_count * grid->x_count);
+    else
+        snprintf(shape, sizeof shape, "%d, %d", grid->r_count, grid->x_count);
+    const int length = snprintf(text, sizeof text, "{'descr': '<c%zu', 'fortran_order': %s, 'shape': (%s), }", size,
+                                columns ? "True" : "False", shape);
     memcpy(bytes + 10, text, (size_t)length);
     unsigned char *to = bytes + 128;
     for (int k = 0; k < grid->r_count * grid->x_count; k++, to += size) {
@@ -58,13 +65,14 @@ static void scores_are_those_of_run(void **state)
     size_t size;
     image_make("bp_linear", "own.mat");
     assert_int_equal(image_file_open(path_in("own.mat"), &file), STATUS_OK);
-    npy_write("rows.npy", &file.image, false);
-    npy_write("columns.npy", &file.image, true);
+    npy_write("rows.npy", &file.image, ROWS);
+    npy_write("row.npy", &file.image, ONE_ROW);
+    npy_write("columns.npy", &file.image, COLUMNS);
     image_file_close(&file);
     program_good((const char *const[ARGUMENTS_MAX]){"run", "study/quick", "-a", "bp_linear", "-o", "ran"});
     program_good((const char *const[ARGUMENTS_MAX]){"image", "--scene", "study/quick", "-a", "bp_linear", "-o",
                                                     "73.mat", "--tile", "17x5"});
-    static const char *const files[] = {"own.mat", "rows.npy", "columns.npy", "73.mat"};
+    static const char *const files[] = {"own.mat", "rows.npy", "row.npy", "columns.npy", "73.mat"};
     for (size_t k = 0; k < COUNT_OF(files); k++) {
         char results[40], table[80];
         snprintf(results, sizeof results, "scored_%zu", k);
@@ -207,11 +215,40 @@ static void differences_are_measured(void **state)
     free(told);
 }
 
+/* An image of the other sign of phase, and one of magnitudes: the row is kept, and what it lacks is said. */
+static void missing_phase_is_said(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *said;
+    } cases[] = {{"good.npy", NULL},
+                 {"conjugate.npy", "complex conjugate has an error"},
+                 {"magnitude.npy", "no pixel has an imaginary part"}};
+    struct image_file file;
+    image_make("bp_linear", "own.mat");
+    assert_int_equal(image_file_open(path_in("own.mat"), &file), STATUS_OK);
+    const struct grid *grid = &file.image.patches[0];
+    for (size_t k = 0; k < COUNT_OF(cases); k++) {
+        for (int i = 0; k > 0 && i < grid->r_count; i++)
+            for (int j = 0; j < grid->x_count; j++) {
+                const double complex value = image_pixel(&file.image, 0, i, j);
+                support_pixel_set(&file.image, 0, i, j, k == 1 ? conj(value) : cabs(value));
+            }
+        npy_write(cases[k].name, &file.image, COLUMNS);
+        struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"score", cases[k].name, "study/quick"});
+        assert_int_equal(outcome.status, 0);
+        assert_true(!strstr(outcome.out, "warning: ") == !cases[k].said);
+        assert_true(!cases[k].said || strstr(outcome.out, cases[k].said));
+        outcome_free(&outcome);
+    }
+    image_file_close(&file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scores_are_those_of_run), cmocka_unit_test(echo_files_know_their_scene),
-        cmocka_unit_test(true_tracks_are_the_second_reference), cmocka_unit_test(unfit_images_are_refused),
-        cmocka_unit_test(differences_are_measured)};
+        cmocka_unit_test(missing_phase_is_said),       cmocka_unit_test(scores_are_those_of_run),
+        cmocka_unit_test(echo_files_know_their_scene), cmocka_unit_test(true_tracks_are_the_second_reference),
+        cmocka_unit_test(unfit_images_are_refused),    cmocka_unit_test(differences_are_measured)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
