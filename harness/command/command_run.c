@@ -33,6 +33,8 @@ static enum status summary_print(const struct batch *batch, int scene_count, con
     if (batch->measured > 0)
         snprintf(text, sizeof text, "%.3g s: imaging %.0f, pictures %.0f, plans %.0f, rest %.0f", all, spent->imaging,
                  batch->drawn_s, spent->planning, all - spent->imaging - batch->drawn_s - spent->planning);
+    else
+        snprintf(text, sizeof text, "no row was measured anew: all are of an earlier run");
     enum status status = results_read(path, &results);
     if (status == STATUS_OK)
         run_summary_print(stdout, &results, scene_count, scenes, spec_count, specs, text);
