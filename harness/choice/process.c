@@ -27,3 +27,8 @@ double process_tile_bytes(const struct problem *problem, double plan_bytes, doub
     return PROGRAM + READER + records * sizeof *a->rx + pings * a->receivers * a->samples * size
            + 2.0 * w.rows * w.columns * size + plan_bytes;
 }
+
+double process_reading_bytes(const struct acquisition *a)
+{
+    return PROGRAM + (double)a->pings * a->receivers * a->samples * DOUBLE;
+}

@@ -11,5 +11,7 @@ double process_bytes(const struct problem *problem, double plan_bytes);
 /* Of a process that forms the problem's window from an echo file: with the pings that it holds, and the window's image
    twice, as formed and as written. */
 double process_tile_bytes(const struct problem *problem, double plan_bytes, double pings);
+/* Of a process that reads all samples of an echo file at once. */
+double process_reading_bytes(const struct acquisition *acquisition);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "choice/process.h"
+#include "echoes/matfile.h"
 #include "imaging/imaging.h"
 
 /* Of the memory, for plans. The rest is for what they do not count: scratch of further threads, buffers of files. */
@@ -99,8 +100,14 @@ enum status tile_choose(const struct spec *spec, const struct scene *scene, doub
     enum { PARTS_MOST = 64, TRACKS = 2 };
     const struct acquisition *a = &scene->acquisition;
     struct tiles tried = *tiles;
+    const double whole = process_reading_bytes(a);
     double reads = INFINITY;
     enum status status = STATUS_OK;
+    if (scene->recording.path && echo_file_is_read_whole(scene->recording.path) && whole > bytes)
+        return status_set(STATUS_UNSUPPORTED,
+                          "--memory: %s is of version 5, which is read whole and takes %.4g MB; at most %.4g MB are "
+                          "wanted (cure: a file of version 7.3: save -v7.3)",
+                          scene->recording.path, 1e-6 * whole, 1e-6 * bytes);
     for (int parts = 1; status == STATUS_OK && parts <= PARTS_MOST && parts <= tiles->grid.r_count
                         && reads > (double)TRACKS * a->pings;
          parts *= 2) {

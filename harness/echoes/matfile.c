@@ -364,6 +364,16 @@ enum status echo_file_open(const char *path, struct acquisition *acquisition, in
     return file_read(path, &(struct pings){.count = 0}, acquisition, &none, exponent);
 }
 
+bool echo_file_is_read_whole(const char *path)
+{
+    char head[10] = "";
+    FILE *stream = fopen(path, "rbe");
+    const bool is_read = stream && fread(head, sizeof head, 1, stream) == 1;
+    if (stream)
+        fclose(stream);
+    return is_read && memcmp(head, "MATLAB 5.0", sizeof head) == 0;
+}
+
 enum status echo_file_read_pings(const char *path, const struct acquisition *a, const struct pings *pings)
 {
     struct wanted wanted = echo_variables[SAMPLES];

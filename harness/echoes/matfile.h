@@ -21,6 +21,8 @@ struct pings {
     void *samples;   /* complex [count][each] of the precision; other pings are left as they are */
     double *largest; /* raised to the largest magnitude of a part, in double */
 };
+/* Is all of it read for some pings: of version 5? */
+bool echo_file_is_read_whole(const char *path);
 /* Read some pings of a file that was opened, alone where the file is of version 7.3. */
 enum status echo_file_read_pings(const char *path, const struct acquisition *acquisition, const struct pings *pings);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "files/paths.h"
 #include "imaging/imaging.h"
@@ -153,7 +154,10 @@ static void tiles_keep_to_a_memory(void **state)
         assert_true(tiles > 1 && bytes <= limit && bytes >= 0.7 * limit);
         free(said);
     }
+    program_good((const char *const[ARGUMENTS_MAX]){"simulate", "long.cfg", "-o", "five.mat"});
     static const struct refusal refusals[] = {
+        {{"image", "-e", "five.mat", "-a", "bp_nearest", "-o", "no.mat", "--memory", "120M"},
+         {"version 5", "190", "7.3"}},
         {{"image", "-e", "long.mat", "-a", "rma_delay", "-o", "no.mat", "--memory", "18M"}, {"--memory", "18 MB"}},
         {{"image", "-e", "long.mat", "-a", "rma_delay", "-o", "no.mat", "--memory", "18x"}, {"--memory", "'18x'"}},
         {{"image", "-e", "long.mat", "-a", "rma_delay", "-o", "no.png", "--memory", "60M"}, {"--memory", "FILE.mat"}},
@@ -197,10 +201,9 @@ static void plans_are_of_tiles(void **state)
                                                                             "--memory", "120M", "--nodes", "6"});
     const char *plan = outcome.out;
     assert_int_equal(outcome.status, 0);
-    const char *command = strstr(plan, "image --echoes long.mat"), *words = strstr(plan, "In ");
+    const char *command = strstr(plan, "image --echoes long.mat --memory 120M -a "), *words = strstr(plan, "In ");
     assert_non_null(command);
     assert_non_null(words);
-    assert_non_null(strstr(command, " --memory 120M -a "));
     assert_int_equal(sscanf(strstr(command, " -a "), " -a %199s", spec), 1);
     assert_int_equal(sscanf(words, "In %d tiles of %d x %d pixels", &tiles, &columns, &rows), 3);
     assert_true(tiles > 1);
@@ -220,6 +223,10 @@ static void plans_are_of_tiles(void **state)
         lines++;
     }
     assert_int_equal(lines, 4);
+    outcome_free(&outcome);
+    assert_int_equal(link(path_in("long.mat"), path_in("it's.mat")), 0);
+    outcome = program_run((const char *const[ARGUMENTS_MAX]){"plan", "-e", "it's.mat", "--memory", "120M"});
+    assert_non_null(strstr(outcome.out, " image --echoes 'it'\\''s.mat' --memory 120M -a "));
     outcome_free(&outcome);
     outcome = program_run((const char *const[ARGUMENTS_MAX]){"plan", "-e", "long.mat", "--memory", "18M"});
     assert_int_equal(outcome.status, 1);
