@@ -87,7 +87,7 @@ static bool plan_memory(struct polar_filter *f, int threads)
     const size_t strip = STRIP * 3 * (size_t)f->rows; /* a padded sub-aperture; both track transforms */
     const int rows = f->up * ((f->pings + f->shape.subapertures - 1) / f->shape.subapertures);
     const int lines = wide_lines(f->acquisition, rows);
-    const size_t chirps = f->is_wide ? 3 * ((size_t)chirp_length(rows, lines) + ALIGNMENT) : 0;
+    const size_t chirps = f->is_wide ? 2 * ((size_t)chirp_length(rows, lines) + ALIGNMENT) : 0;
     f->scratch_length = (strip > (size_t)f->length ? strip : (size_t)f->length) + ALIGNMENT;
     f->scratch_length = f->scratch_length > chirps ? f->scratch_length : chirps;
     f->scratch_length = f->scratch_length / ALIGNMENT * ALIGNMENT;
@@ -317,7 +317,7 @@ static void turn(complex_real *value, double cycles)
 
 /* Wavenumbers from `first` on, `ratio` times those of the carrier, of the rows about the sub-aperture's middle:
    exponents  first (i - middle) + a (i - middle),  where a i = (a^2 + i^2 - (a - i)^2)/2 makes it a convolution. Onto
-   the wavenumbers (sign -1), or back (1). Values in `wave`, which has room for three lines. */
+   the wavenumbers (sign -1), or back (1). Values in `wave`, which has room for two lines. */
 static void chirp(const struct aperture *p, int first, double ratio, int sign, complex_real *wave)
 {
     const int rows = p->end - p->begin, from = sign < 0 ? rows : p->lines, onto = sign < 0 ? p->lines : rows;

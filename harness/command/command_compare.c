@@ -23,6 +23,31 @@ static enum status compare_sides(const struct task *task, struct diff *diff)
     return diff_results(names[0], names[1], diff);
 }
 
+struct number {
+    char text[24];
+};
+
+static struct number number(double value, int digits)
+{
+    struct number number;
+    if (isfinite(value))
+        snprintf(number.text, sizeof number.text, "%.*g", digits, value);
+    else
+        snprintf(number.text, sizeof number.text, "undefined");
+    return number;
+}
+
+static void differences_print(const struct error_metrics *e, const struct shift *shift)
+{
+    if (*e->reason)
+        printf("%s\n", e->reason);
+    printf("Relative error %s, after one complex gain %s; largest difference %s of the peak.\n",
+           number(e->error, 3).text, number(e->error_gain, 3).text, number(e->peak_ratio, 3).text);
+    printf("Gain %s at %s rad; phase %s rad rms of strong pixels; shift %s m along x, %s m along r.\n",
+           number(cabs(e->gain), 6).text, number(carg(e->gain), 4).text, number(e->phase_rms_rad, 3).text,
+           number(shift->x_m, 3).text, number(shift->r_m, 3).text);
+}
+
 /* Two image files: the difference of the first from the second. */
 static enum status compare_images(const struct task *task)
 {
@@ -46,11 +71,7 @@ static enum status compare_images(const struct task *task)
     if (status == STATUS_OK) {
         const struct error_metrics e = metrics_error(image, reference);
         const struct shift shift = metrics_shift(image, reference);
-        if (*e.reason)
-            printf("%s\n", e.reason);
-        printf("Relative error %.3g, after one complex gain %.3g; largest difference %.3g of the peak.\n"
-               "Gain %.6g at %.4g rad; phase %.3g rad rms of strong pixels; shift %.3g m along x, %.3g m along r.\n",
-               e.error, e.error_gain, e.peak_ratio, cabs(e.gain), carg(e.gain), e.phase_rms_rad, shift.x_m, shift.r_m);
+        differences_print(&e, &shift);
         if (task->output)
             status = picture_differ(task->output, image, reference, names);
     }

@@ -202,6 +202,8 @@ static void differences_are_measured(void **state)
     for (int n = 0; n < rows * columns; n++)
         pixels[n] *= -2 * I;
     assert_int_equal(image_file_write(path_in("turned.mat"), image, &file.origin), STATUS_OK);
+    memset(pixels, 0, (size_t)rows * (size_t)columns * sizeof *pixels);
+    assert_int_equal(image_file_write(path_in("zero.mat"), image, &file.origin), STATUS_OK);
     image_file_close(&file);
     char *told = program_output((const char *const[ARGUMENTS_MAX]){"compare", "moved.mat", "own.mat"});
     const char *shift = strstr(told, "shift ");
@@ -212,6 +214,10 @@ static void differences_are_measured(void **state)
     told = program_output((const char *const[ARGUMENTS_MAX]){"compare", "moved.mat", "turned.mat", "-o", "moved.png"});
     assert_non_null(strstr(told, "Gain 2 at -1.571 rad"));
     assert_non_null(strstr(told, "after one complex gain 0;"));
+    free(told);
+    told = program_output((const char *const[ARGUMENTS_MAX]){"compare", "own.mat", "zero.mat"});
+    assert_non_null(strstr(told, "the exact image is zero\nRelative error undefined, "));
+    assert_null(strstr(told, "nan"));
     free(told);
 }
 
