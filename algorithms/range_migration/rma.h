@@ -9,7 +9,9 @@
        w = exp(j pi/4) F/(1 - v^2/c^2) sqrt(c r/(2 kappa^3)) / (spacing P N_f),    kappa = c K/4 pi,
 
    in the same absolute scale and phase as back projection. As K is exact and linear in r, the azimuth correction
-   (LBF21 Eq. (17)) has nothing left to do. The stages, timed one by one:
+   (LBF21 Eq. (17)) has nothing left to do. rma_lbf:variant=printed takes LBF21's chain instead: conversion by psi_i/2
+   alone, K of Eqs. (15) and (16), which leaves the speed out, and rows turned by Eq. (17). The range that Eq. (15)
+   refers to cancels between (15) and (16); only the taps of the interpolation see it. The stages, timed one by one:
 
        compress       range FFT and the replica's conjugate
        spread         azimuth FFT of each receiver; X[q mod P] serves all M P frequencies (LBF21 Eq. (10))

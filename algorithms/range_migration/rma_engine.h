@@ -115,6 +115,7 @@ struct rma_line {
     int begin;           /* first bin of the band from there on; `band` if there is none */
     double middle, half; /* Hz: the polynomials' interval */
     double slowness;     /* s/m: delay over range, (1/2 pi) dK/dF at fc */
+    double offset;       /* cycles/m of range: rma_offset */
 };
 
 /* Oversampling of a swath by the transform that the Stolt interpolation reads. */
@@ -196,6 +197,10 @@ struct rma {
     struct rma_method method;
     struct rma_options options;
     struct spectrum_setting setting;
+    /* The monostatic phase r K of focusing: `setting`, exact; for rma_lbf:variant=printed without the speed, LBF21
+       Eqs. (15), (16), and rows are turned by Eq. (17) afterwards. */
+    struct spectrum_setting monostatic;
+    bool turns_rows;
     struct work work;
 
     /* track: ping k is emitted at x_first + k spacing, receiver m is offset[m] ahead */
@@ -304,7 +309,9 @@ static inline int rma_turns(const struct rma *rma)
 /* ---- rma_phase.c ---- */
 
 double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin); /* F, Hz */
-/* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
+/* Cycles a metre of range by which rows are turned, LBF21 Eq. (17) with theta at fc; 0 where K is exact. */
+double rma_offset(const struct rma *rma, double nu);
+/* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi, less what rows are turned by. */
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu);
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q);
 /* Fit the correction at `r` minus the one at `less` (0: none is subtracted) for all groups. */

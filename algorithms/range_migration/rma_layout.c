@@ -88,6 +88,10 @@ static enum status lay_track(struct rma *rma)
     rma->setting = view.setting;
     rma->bounds = view.bounds;
     rma->converts = view.converts;
+    rma->turns_rows = rma->converts && rma->method.spectrum == spectrum_lbf_printed;
+    rma->monostatic = rma->setting;
+    if (rma->turns_rows)
+        rma->monostatic.speed = 0;
     rma->nearest = INFINITY;
     rma->farthest = -INFINITY;
     for (int k = 0; k < rma->problem.patch_count; k++) {

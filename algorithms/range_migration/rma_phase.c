@@ -12,10 +12,17 @@ double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int b
     return rma->setting.fc + (swath->band_first + bin) * rma->fs / swath->length;
 }
 
+double rma_offset(const struct rma *rma, double nu)
+{
+    const struct spectrum_setting *s = &rma->setting;
+    const double sine = s->sound_speed * nu / (2 * s->fc);
+    return rma->turns_rows ? -s->speed * nu / (s->sound_speed * sqrt((1 - sine) * (1 + sine))) : 0;
+}
+
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu)
 {
     double phase = rma->method.spectrum(&rma->setting, rma->offset[receiver], r, frequency, nu);
-    return -(phase + r * spectrum_monostatic(&rma->setting, frequency, nu)) / (2 * M_PI);
+    return -(phase + r * spectrum_monostatic(&rma->monostatic, frequency, nu)) / (2 * M_PI) - r * rma_offset(rma, nu);
 }
 
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q)
@@ -32,6 +39,7 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
     double first = rma_frequency(rma, swath, 0), last = rma_frequency(rma, swath, swath->band - 1);
     if (!(line.lowest < s->fc && line.lowest < last))
         return line; /* `printed` takes theta at fc, which must exist */
+    line.offset = rma_offset(rma, line.nu);
     line.begin = (int)fmax(0, ceil((line.lowest - first) / (rma->fs / swath->length)));
     line.middle = (fmax(first, line.lowest) + last) / 2;
     line.half = fmax(last - line.middle, rma->fs / swath->length);

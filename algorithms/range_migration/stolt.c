@@ -98,12 +98,13 @@ static struct bins bins_of(const struct workspace *w, const struct rma_patch *pa
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
-    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c, fc = rma->setting.fc;
+    const struct spectrum_setting *monostatic = &rma->monostatic;
+    const double c = monostatic->sound_speed, beta = monostatic->speed / c, fc = monostatic->fc;
     const double bin = rma->fs / swath->length, step = 2 * M_PI / (patch->length * patch->step);
     const double lowest = fmax(swath->band_first - RMA_GUARD, -(swath->length / 2)) * bin;
     const double highest = fmin(swath->band_first + swath->band - 1 + RMA_GUARD, (swath->length - 1) / 2) * bin;
-    *first = (long long)ceil(spectrum_monostatic(&rma->setting, fmax(fc + lowest, w->line.lowest), w->line.nu) / step);
-    *last = (long long)floor(spectrum_monostatic(&rma->setting, fc + highest, w->line.nu) / step);
+    *first = (long long)ceil(spectrum_monostatic(monostatic, fmax(fc + lowest, w->line.lowest), w->line.nu) / step);
+    *last = (long long)floor(spectrum_monostatic(monostatic, fc + highest, w->line.nu) / step);
     const double to_kappa = c / (4 * M_PI) * step;
     return (struct bins){.fc = fc,
                          .half = c * w->line.nu / 2,
@@ -125,6 +126,18 @@ static void add_turned(int n, const real *restrict re, const real *restrict im, 
     for (int i = 0; i < n; i++) {
         wave[2 * i] += re[i] * wr[i] - im[i] * wi[i];
         wave[2 * i + 1] += re[i] * wi[i] + im[i] * wr[i];
+    }
+}
+
+/* LBF21 Eq. (17). */
+static void turn_rows(const struct grid *grid, double offset, real *rows)
+{
+    for (int i = 0; i < grid->r_count; i++) {
+        const double cycles = offset * (grid->r_first + i * grid->r_step);
+        real c, s, re = rows[2 * i], im = rows[2 * i + 1];
+        phasor((real)(cycles - floor(cycles + 0.5)), &c, &s);
+        rows[2 * i] = re * c - im * s;
+        rows[2 * i + 1] = re * s + im * c;
     }
 }
 
@@ -164,6 +177,8 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
         stage_end(w, RMA_FOCUS);
     }
     FFTW(execute_dft)(patch->focus_plan, (complex_real *)wave, (complex_real *)rows);
+    if (rma->turns_rows)
+        turn_rows(&patch->grid, w->line.offset, rows);
     memcpy(stored, rows, 2 * (size_t)patch->grid.r_count * sizeof *stored);
     stage_end(w, RMA_FOCUS);
 }

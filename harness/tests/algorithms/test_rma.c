@@ -10,6 +10,7 @@
 
 #include "contract/delay.h"
 #include "metrics/metrics.h"
+#include "range_migration/rma_engine.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/rma_numbers.h"
 #include "tests/algorithms/rma_scenes.h"
@@ -318,6 +319,38 @@ static void block_counts(void **state)
     free_scene(&scene);
 }
 
+/* As LBF21 prints its chain, the conversion takes half of psi_i away and nothing else (Eqs. (11), (12)); focusing and
+   the turn of rows take psi (Eqs. (4), (15) to (17)). */
+static void printed_chain(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct grid grid = {0, 1, 1, 40, 1, 80, 0};
+    struct rma *rma;
+    make_scene(&(struct rma_track){2, 66, 12800, 24e3, 0.032, 0, speed * pri, 0.04}, &scene);
+    struct problem problem = problem_make(&scene.acquisition, 1, &grid, PRECISION_DOUBLE);
+    const struct rma_options options = {.blocks = 16, .variant = RMA_PRINTED};
+    const struct rma_method method = rma_choose(algorithm_find("rma_lbf")->method, &options);
+    assert_int_equal(rma_count(&problem, &method, &options, &rma), STATUS_OK);
+    const double c = rma->setting.sound_speed, fc = rma->setting.fc, v = speed;
+    double worst = 0;
+    for (int n = 0; n < 3 * 3 * 3 * 3; n++) {
+        const int receiver = 32 * (n / 27);
+        const double r = 40 + 130 * (n / 9 % 3), nu = 12.5 * (n / 3 % 3 - 1), f = fc + 10e3 * (n % 3 - 1);
+        const double s = sqrt(f * f - c * nu / 2 * (c * nu / 2)), cosine = sqrt(1 - pow(c * nu / (2 * fc), 2));
+        const double d = rma->offset[receiver], delta = d + 2 * r * v / (c * cosine);
+        const double psi = -2 * M_PI * v * nu * r / (c * cosine) + 4 * M_PI / c * r * s;
+        const double psi_i = -2 * M_PI * nu * d + M_PI / c * delta * delta * s * s * s / (f * f * r);
+        const double bulk = r * spectrum_monostatic(&rma->monostatic, f, nu) / (2 * M_PI) + r * rma_offset(rma, nu);
+        worst = worse_of(worst, fabs(2 * M_PI * rma_correction(rma, receiver, r, f, nu) - psi_i / 2));
+        worst = worse_of(worst, fabs(2 * M_PI * bulk - psi));
+    }
+    print_message("printed chain: %.1e rad\n", worst);
+    assert_true(worst < 1e-8);
+    rma_destroy(rma);
+    free_scene(&scene);
+}
+
 /* ---- odd geometries ---- */
 
 /* Error against the exact image of a small scene with one target. */
@@ -396,16 +429,10 @@ static void odd_tracks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(independent_numbers),
-        cmocka_unit_test(short_swath),
-        cmocka_unit_test(other_ways),
-        cmocka_unit_test(recurrences),
-        cmocka_unit_test(long_swath),
-        cmocka_unit_test(block_counts),
-        cmocka_unit_test(ghosts),
-        cmocka_unit_test(one_receiver),
-        cmocka_unit_test(odd_tracks),
-        cmocka_unit_test(columns),
+        cmocka_unit_test(independent_numbers), cmocka_unit_test(short_swath), cmocka_unit_test(other_ways),
+        cmocka_unit_test(recurrences),         cmocka_unit_test(long_swath),  cmocka_unit_test(block_counts),
+        cmocka_unit_test(printed_chain),       cmocka_unit_test(ghosts),      cmocka_unit_test(one_receiver),
+        cmocka_unit_test(odd_tracks),          cmocka_unit_test(columns),
     };
     return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
 }
