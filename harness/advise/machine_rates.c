@@ -311,7 +311,7 @@ enum status machine_rates_measure(struct rates *rates)
     struct probes probes = {0};
     const int threads = omp_get_max_threads();
     *rates = (struct rates){.doubled = 1};
-    enum status status = scene_load(scene_name, SCENE_DIRECTORY, &bench.scene);
+    enum status status = scene_load(scene_name, data_path(DATA_SCENES), &bench.scene);
     if (status != STATUS_OK)
         return status;
     bench.usual = bench.scene.patches[0];

@@ -1,4 +1,5 @@
 #include "advise/planned.h"
+#include "files/paths.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -266,7 +267,7 @@ void planned_answer(FILE *stream, const struct planned *planned, const char *sou
         snprintf(text, sizeof text, "%s: predicted error %.1e, %s, %s of memory", spec, best->error,
                  cell_time(best->seconds).text, cell_significant(1e-6 * best->bytes, " MB").text);
         table_text(stream, 0, text);
-        fprintf(stream, "  ./sasbench image %s -a %s -o image.mat\n", source, spec);
+        fprintf(stream, "  %s image %s -a %s -o image.mat\n", program_called(), source, spec);
     } else {
         fprintf(stream, "Nothing is within an error of %.2g.\n", planned->budget.error);
     }

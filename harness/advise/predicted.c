@@ -169,5 +169,5 @@ enum status predicted_draw(const char *directory)
     snprintf(path, sizeof path, "%s/predicted.png", directory);
     snprintf(csv, sizeof csv, "%s/predicted.csv", directory);
     provenance_line(footer);
-    return plot_csv(path, PLOT_DIRECTORY, "predicted.gp", csv, footer);
+    return plot_csv(path, data_path(DATA_PLOTS), "predicted.gp", csv, footer);
 }

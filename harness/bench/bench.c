@@ -110,7 +110,7 @@ static enum status scene_measure(struct bench *bench, int first, int count)
     for (int k = first; lines && k < first + count; k++)
         if (bench_line_here(&bench->lines[k]))
             lines[here++] = &bench->lines[k];
-    enum status status = lines ? scene_load(bench->lines[first].scene, SCENE_DIRECTORY, &scene)
+    enum status status = lines ? scene_load(bench->lines[first].scene, data_path(DATA_SCENES), &scene)
                                : status_set(STATUS_FAILED, "no memory for %d lines", count);
     if (status == STATUS_OK) {
         status = bench_lines_measure(&scene, lines, here);
@@ -144,7 +144,7 @@ static enum status bench_measure(struct bench *bench, bool picture)
     if (status != STATUS_OK || !picture)
         return status;
     provenance_line(footer);
-    return plot_csv(png, PLOT_DIRECTORY, "bench.gp", csv, footer);
+    return plot_csv(png, data_path(DATA_PLOTS), "bench.gp", csv, footer);
 }
 
 /* The folder is taken for as long as this lasts. */
@@ -381,7 +381,7 @@ static enum status candidate_try(const struct spec *spec, const struct wanted *c
 {
     struct scene scene;
     struct imaging imaging;
-    enum status status = scene_load(candidate->scene, SCENE_DIRECTORY, &scene);
+    enum status status = scene_load(candidate->scene, data_path(DATA_SCENES), &scene);
     if (status != STATUS_OK)
         return status;
     const struct problem problem = scene_problem(&scene, spec->precision);

@@ -5,8 +5,6 @@
 
 #include "contract/status.h"
 
-#define BENCH_FOLDER SASBENCH_ROOT "/scenes/bench"
-
 /* Measure the lines of a folder's lines.csv into DIRECTORY/bench.csv with a picture, compare them with the folder's
    goals.csv in DIRECTORY/goals.csv, and print which goals are met. DIRECTORY is made. Errors: those of csv_read,
    spec_parse, scene_load and session_open; STATUS_INVALID for a cell that is not accepted, and where a file cannot be

@@ -139,7 +139,7 @@ enum status claims_read(const char *path, struct claims *claims)
     if (status == STATUS_OK)
         status = csv_columns(&claims->csv, columns, NULL);
     if (status == STATUS_OK)
-        status = csv_read(NUMBERS_FILE, CSV_TAIL_KEEP, &claims->numbers);
+        status = csv_read(data_path(DATA_NUMBERS), CSV_TAIL_KEEP, &claims->numbers);
     if (status == STATUS_OK)
         status = csv_columns(&claims->numbers, number_columns, NULL);
     if (status == STATUS_OK)

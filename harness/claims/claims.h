@@ -28,9 +28,6 @@ bool comparison_identity(const char *text);
 enum status comparisons_read(struct formula *formula, const char *column, const char *text,
                              struct evaluation *evaluation);
 
-#define CLAIMS_FILE  SASBENCH_ROOT "/results/claims.csv"
-#define NUMBERS_FILE SASBENCH_ROOT "/results/numbers.csv" /* that claims name */
-
 /* Texts belong to the file that was read. */
 struct claim {
     const char *id, *paper, *section, *claim;

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "files/folder.h"
 #include "files/paths.h"
@@ -75,8 +76,8 @@ static enum status select_all(const struct reproduction *request, struct selecti
     const bool all = request->count == 0;
     enum status status = STATUS_OK;
     if (selection->claims->count > CLAIMS_MAX)
-        return status_set(STATUS_INVALID, "%s: %d claims; up to %d are accepted", CLAIMS_FILE, selection->claims->count,
-                          CLAIMS_MAX);
+        return status_set(STATUS_INVALID, "%s: %d claims; up to %d are accepted", data_path(DATA_CLAIMS),
+                          selection->claims->count, CLAIMS_MAX);
     for (int n = 0; n < request->count && status == STATUS_OK; n++)
         status = id_select(request->ids[n], selection);
     for (int k = 0; paper_tables[k].id; k++)
@@ -122,7 +123,7 @@ static enum status directory_check(const char *directory)
     char path[4200];
     struct stat ours, theirs;
     snprintf(path, sizeof path, "%s/claims.csv", directory);
-    if (stat(path, &theirs) == 0 && stat(CLAIMS_FILE, &ours) == 0 && ours.st_dev == theirs.st_dev
+    if (stat(path, &theirs) == 0 && stat(data_path(DATA_CLAIMS), &ours) == 0 && ours.st_dev == theirs.st_dev
         && ours.st_ino == theirs.st_ino)
         return status_set(STATUS_INVALID,
                           "reproduce: -o %s: its claims.csv is the list of claims; another folder is "
@@ -271,6 +272,9 @@ static enum status request_check(const struct reproduction *request, bool sensit
                           request->quick   ? "--quick"
                           : request->shard ? "--shard"
                                            : request->ids[0]);
+    if (request->docs && access(data_path(DATA_PAGES), W_OK) != 0)
+        return status_set(STATUS_INVALID, "reproduce: --docs writes into %s, which cannot be written: use a clone",
+                          data_path(DATA_PAGES));
     return directory_check(request->directory);
 }
 
@@ -285,7 +289,7 @@ enum status papers_reproduce(const struct reproduction *request)
     if (status == STATUS_OK)
         status = request_check(request, sensitivity);
     if (status == STATUS_OK)
-        status = claims_read(CLAIMS_FILE, &claims);
+        status = claims_read(data_path(DATA_CLAIMS), &claims);
     snprintf(untimed, sizeof untimed, "%s/" UNTIMED, request->directory);
     if (status == STATUS_OK && sensitivity) {
         status = sensitivity_reproduce(request->directory, untimed, &claims);
@@ -296,7 +300,7 @@ enum status papers_reproduce(const struct reproduction *request)
                                          request->quick ? EFFORT_NONE : EFFORT_WHOLE);
     }
     if (status == STATUS_OK && request->docs)
-        status = pages_write(request->directory, PAGES_DIRECTORY, &claims);
+        status = pages_write(request->directory, data_path(DATA_PAGES), &claims);
     claims_free(&claims);
     return status;
 }

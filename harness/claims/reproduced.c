@@ -22,7 +22,7 @@ void reproduced_head(FILE *file, const char *what, const struct measured *measur
     for (int k = 0; k < csv->row_count; k++)
         load = fmax(load, measured->measurements.measurements[k].load);
     if (isfinite(load))
-        fprintf(file, "# load: at most %.2f ready processes while measured (the rows' column `load`)\n", load);
+        fprintf(file, "# load: at most %.2f ready processes while measured (the rows' column load)\n", load);
 }
 
 static void item_format(const struct reproduced *line, char *item, size_t size)

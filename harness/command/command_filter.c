@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "files/paths.h"
 #include "command/task.h"
 #include "echoes/echo_data.h"
 #include "measure/filtering.h"
@@ -112,7 +113,7 @@ enum status command_filter(const struct task *task)
         status = spec_parse("wk_polar", &usual);
     if (status == STATUS_OK)
         status = task->echoes ? echo_file_read(task->echoes, &recorded, &echoes)
-                              : scene_load(task->names[0], SCENE_DIRECTORY, &scene);
+                              : scene_load(task->names[0], data_path(DATA_SCENES), &scene);
     if (status == STATUS_OK)
         status = source_filter(task, task->spec_count ? task->specs : &usual, &scene,
                                task->echoes ? &recorded : &scene.acquisition, &echoes);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "files/paths.h"
 #include "choice/choice.h"
 #include "echoes/echo_data.h"
 #include "run/progress_line.h"
@@ -30,7 +31,7 @@ enum status command_simulate(const struct task *task)
     struct simulation *simulation = NULL;
     enum status status = output_check("simulate", task->output);
     if (status == STATUS_OK)
-        status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
+        status = scene_load(task->names[0], data_path(DATA_SCENES), &scene);
     if (status != STATUS_OK)
         return status;
     if (scene.recorded)
@@ -215,7 +216,7 @@ static enum status scene_open(const struct task *task, struct scene *scene)
         return echoes_scene(task, scene);
     enum status status = task->grid ? grid_parse(task->grid, &grid) : STATUS_OK;
     if (status == STATUS_OK)
-        status = scene_load(task->scene, SCENE_DIRECTORY, scene);
+        status = scene_load(task->scene, data_path(DATA_SCENES), scene);
     if (status != STATUS_OK || !task->grid)
         return status;
     scene->patches[0] = grid;

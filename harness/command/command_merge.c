@@ -27,7 +27,7 @@ enum status command_merge(const struct task *task)
         if (!place_is_file(text)) /* of `stability` */
             continue;
         status = plot_results(merged[k].directory, NULL, &undrawn);
-        snprintf(text, sizeof text, "Next: ./sasbench report %.4000s", merged[k].directory);
+        snprintf(text, sizeof text, "Next: %s report %.4000s", program_called(), merged[k].directory);
         if (status == STATUS_OK)
             table_text(stdout, 0, text);
     }

@@ -5,6 +5,7 @@
 #include "run/batch.h"
 #include "advise/machine_rates.h"
 #include "command/task.h"
+#include "text/text_append.h"
 #include "results/results.h"
 #include "measure/timing.h"
 #include "run/run_summary.h"
@@ -42,8 +43,11 @@ static enum status summary_print(const struct batch *batch, int scene_count, con
     if (status != STATUS_OK)
         return status;
     snprintf(path, sizeof path, "%s/overview.png", batch->directory);
-    snprintf(text, sizeof text, "Next: %s%s./sasbench report %s%s", access(path, F_OK) == 0 ? path : "",
-             access(path, F_OK) == 0 ? "; " : "", batch->directory, tables ? "; ./sasbench help columns" : "");
+    const bool drawn = access(path, F_OK) == 0;
+    snprintf(text, sizeof text, "Next: %s%s%s report %s", drawn ? path : "", drawn ? "; " : "", program_called(),
+             batch->directory);
+    if (tables)
+        text_append(text, sizeof text, "; %s help columns", program_called());
     table_text(stdout, 0, text);
     return STATUS_OK;
 }

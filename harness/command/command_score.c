@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "files/paths.h"
 #include "command/task.h"
 #include "echoes/matfile.h"
 #include "echoes/npy.h"
@@ -60,7 +61,7 @@ static enum status scene_find(const struct task *task, struct scene *scene)
     if (task->grid && !has_extension(task->names[0], ".npy"))
         return status_set(STATUS_INVALID, "score: --grid %s goes with --echoes FILE.mat, or with an image in .npy",
                           task->grid);
-    return scene_load(task->names[1], SCENE_DIRECTORY, scene);
+    return scene_load(task->names[1], data_path(DATA_SCENES), scene);
 }
 
 /* An .npy file has no axes: they are those of --grid, or the scene's. */

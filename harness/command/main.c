@@ -1,4 +1,4 @@
-/* The command line: one table of commands, one of options. */
+/* The command line. */
 #include <ctype.h>
 #include <fcntl.h>
 #include <getopt.h>
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "command/task.h"
+#include "command/commands.h"
 #include "common/isa.h"
 #include "guests/external.h"
 #include "text/number.h"
@@ -22,148 +22,22 @@
 #include "results/provenance.h"
 #include "show/table.h"
 
-enum { THREADS_MOST = 1024 };
-
-struct command {
-    const char *name, *brief, *arguments, *summary;
-    const char *options; /* the letters of the options it takes */
-    int names_least, names_most;
-    enum status (*run)(const struct task *task);
-    bool supervised; /* a crash ends one measurement, and the others go on */
-    bool hidden;     /* not for the terminal */
-    bool every;      /* without a SPEC it takes each algorithm by its defaults */
-};
-
-static const struct command commands[] = {
-    {"run", "compare algorithms on scenes: error against run time",
-     "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [-o DIR] [--all] [--flops] "
-     "[--shard I/N] [--timeout S]",
-     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLFXU", 0,
-     INT_MAX, command_run, true, .every = true},
-    {"report", "make one page of a results folder", "DIR", "make one page of a results folder: DIR/report.html", "", 1,
-     1, command_report, false},
-    {"list", "list the algorithms", "", "list the algorithms, with summary, reference and traits", "", 0, 0,
-     command_list, false},
-    {"info", "explain an algorithm's settings, or an echo or image file", "(NAME | PLUGIN.so | FILE.mat)",
-     "print an algorithm's parameters, with default, bounds and sweep; or the content of an echo or image file, with a "
-     "grid to begin with",
-     "", 1, 1, command_info, false},
-    {"check", "which algorithms can image a scene, and which conditions fail",
-     "(SCENE | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [--all]",
-     "check, before any work, which algorithms can image a scene, and which conditions fail or are near their limit; "
-     "exit status 1 where an algorithm is refused",
-     "aegL", 0, 1, command_check, .every = true},
-    {"plan", "the fastest algorithm and settings within an error",
-     "(SCENE | --echoes FILE.mat [--grid GRID]) [--error E | --time S] [--memory BYTES] [--nodes N] "
-     "[-o FILE.csv] [--all]",
-     "choose the fastest settings within an error, or the most exact within a time; exit status 1 where nothing fits",
-     "oegtETYDL", 0, 1, command_plan, false},
-    {"scenes", "draw a random scene from a seed", "random --seed N [-o FILE.cfg]",
-     "draw a scene from a seed, of any band, array and range", "oS", 1, 1, command_scenes, false},
-    {"simulate", "write a scene's echoes", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate,
-     false},
-    {"image", "form one image",
-     "(--scene SCENE | --echoes FILE.mat [--grid GRID]) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
-     "[--verify] [(--tile NxM | --memory BYTES) [--shard I/N]] [--timeout S]",
-     "form one image, as numbers or as a picture; with --tile or --memory it continues where it was ended",
-     "oseagtRWIXYU", 0, 0, command_image, false},
-    {"show", "draw an image file", "FILE.mat [-o FILE.png] [--range DB]",
-     "draw an image file; the picture is beside it, or at -o", "oR", 1, 1, command_show, false},
-    {"score", "measure an image that another program formed",
-     "(IMAGE.mat | IMAGE.npy) (SCENE | --echoes FILE.mat [--grid GRID]) [--name NAME] [--seconds S] [-o DIR]",
-     "measure an image that another program formed of a scene's echoes, and add its row to a results folder", "oegtNK",
-     1, 2, command_score, false},
-    {"filter", "remove the echoes from outside a target area",
-     "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
-     "remove the echoes from outside a target area, and print each target's kept energy", "oeat", 0, 1, command_filter,
-     false},
-    {"compare", "how two results, two images or two programs differ",
-     "(OLD NEW | IMAGE.mat IMAGE.mat [-o FILE.png] | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) "
-     "[--markdown FILE] [--json FILE]",
-     "list what got worse between two results folders or CSV files; how two image files differ; or what is slower of "
-     "two programs, run side by side",
-     "oaBMJ", 2, INT_MAX, command_compare, false},
-    {"measure", "", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false, true},
-    {"baseline", "measure the quality and work that the tests compare with", "[-o FILE.csv]",
-     "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0, command_baseline,
-     false},
-    {"merge", "join the results folders of shards", "DIR ... -o DIR",
-     "join the results folders of shards; a folder for each kind of machine", "o", 1, INT_MAX, command_merge, false},
-    {"reproduce", "the papers' tables and claims beside ours", "[ID ...] [-o DIR] [--quick | --docs | --shard I/N]",
-     "measure the papers' tables, figures and claims again, beside the printed numbers", "otXQG", 0, INT_MAX,
-     command_reproduce, true},
-    {"sweep", "error against run time, each algorithm over its settings",
-     "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [--precision float|double] [-o DIR] "
-     "[--all] [--shard I/N] [--timeout S]",
-     "measure error against run time, each algorithm over its settings", "oategPLXU", 0, INT_MAX, command_sweep, true,
-     .every = true},
-    {"phase", "phase errors of the two-dimensional spectra (LBF21)", "([SCENE] [-o DIR] | --at FILE.csv)",
-     "compute phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1, command_phase, false},
-    {"stability", "digits lost on extreme scenes in all rounding modes",
-     "[SCENE ...] [--algorithm SPEC ...] [-o DIR] [--quick] [--shard I/N]",
-     "image extreme scenes in all rounding modes: verdicts and digits lost, against results/stability.csv", "oaQX", 0,
-     INT_MAX, command_stability, false},
-    {"conformance", "test every promise of one algorithm, also of a plug-in", "SPEC [--timeout S]",
-     "test every promise of one algorithm: image, bits, memory, work, settings; exit status 1 where one is broken", "U",
-     1, 1, command_conformance, false},
-    {"bench", "speed of the engines against the processor's peak", "[SPEC ...] [-o DIR]",
-     "measure the speed of the engines, or of the SPECs, against the processor's peak and the scalar reference loop",
-     "ot", 0, INT_MAX, command_bench, false},
-};
-
-#define IN_TASK(field) offsetof(struct task, field)
-/* Options and their values: a value goes to the text of struct task at the offset, an option without one sets a flag
-   there. */
-static const struct named {
-    int letter; /* a lower-case letter works by itself, too */
-    const char *name, *value, *text;
-    size_t offset; /* 0: not stored */
-} options[] = {
-    {'o', "output", "PATH", "file or folder of the result", IN_TASK(output)},
-    {'s', "scene", "SCENE", "a path, or a name below scenes/ without .cfg", IN_TASK(scene)},
-    {'e', "echoes", "FILE", "recorded echoes in MATLAB format", IN_TASK(echoes)},
-    {'a', "algorithm", "SPEC", "NAME, PLUGIN.so or external:COMMAND, then :key=value,...; all take precision=double",
-     0},
-    {'g', "grid", "GRID", "xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)", IN_TASK(grid)},
-    {'t', "threads", "N", "OpenMP threads, 1 to 1024", IN_TASK(threads)},
-    {'R', "range", "DB", "range of a picture below its peak, 60 dB unless given", IN_TASK(range)},
-    {'I', "tile", "NxM", "form so many pixels along x and r at a time", IN_TASK(tile)},
-    {'U', "timeout", "S", "longest silence of an external program, 600 s unless given", IN_TASK(timeout)},
-    {'X', "shard", "I/N", "take the I-th of N parts of the work", IN_TASK(shard)},
-    {'P', "precision", "WHICH", "float or double; both unless given, or stated by a SPEC", IN_TASK(precision)},
-    {'E', "error", "E", "of the image after one gain (L2), 1e-3 unless given", IN_TASK(error)},
-    {'T', "time", "S", "in place of --error: the least error within a run time", IN_TASK(time)},
-    {'Y', "memory", "BYTES", "most memory of the image's process, as 2G; `plan`: 4G", IN_TASK(memory)},
-    {'D', "nodes", "N", "the time on so many machines such as this one", IN_TASK(nodes)},
-    {'S', "seed", "N", "a whole number from 0 to 1e15", IN_TASK(seed)},
-    {'N', "name", "NAME", "of the image's program; the file's name unless given", IN_TASK(name)},
-    {'K', "seconds", "S", "run time of that program; the row marks it as stated", IN_TASK(seconds)},
-    {'A', "at", "FILE.csv", "points: columns d, r, F, f, fc, v, c", IN_TASK(at)},
-    {'B', "ab", NULL, "run two programs side by side and compare their times", IN_TASK(ab)},
-    {'Q', "quick", NULL, "less: one scene of each family (`stability`), or no times (`reproduce`)", IN_TASK(quick)},
-    {'L', "all", NULL, "print every line, not the answer alone", IN_TASK(all)},
-    {'F', "flops", NULL, "count FLOPs by the papers' formulas as well", IN_TASK(flops)},
-    {'W', "verify", NULL, "measure the image's error on some of its pixels", IN_TASK(verify)},
-    {'G', "docs", NULL, "write one page a paper into docs/papers", IN_TASK(docs)},
-    {'M', "markdown", "FILE", "the findings as a comment for a CI", IN_TASK(markdown)},
-    {'J', "json", "FILE", "the findings for trackers of benchmarks", IN_TASK(json)},
-    {'h', "help", NULL, NULL, 0},
-};
-enum { OPTIONS = sizeof options / sizeof *options };
-static const char exit_text[] = "\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n";
+enum { THREADS_MOST = 1024, OPTIONS_MOST = 40 };
 
 /* One screen; each command's help has its options. */
 static void help(void)
 {
     printf("sasbench compares imaging algorithms for multi-receiver synthetic aperture sonar\non identical echoes.\n\n"
-           "Usage: sasbench COMMAND [ARGUMENTS]; begin with: ./sasbench run\n\n");
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
-        if (!commands[k].hidden)
-            printf("  %-11s %s\n", commands[k].name, commands[k].brief);
-    printf("  %-11s %s\n", "test", "verify this build (a command of the script ./sasbench)");
+           "Usage: sasbench COMMAND [ARGUMENTS]; begin with: %s run\n\n",
+           program_called());
+    for (const struct command *c = commands; c->name; c++)
+        if (!c->hidden)
+            printf("  %-11s %s\n", c->name, c->brief);
+    if (*program_called() == '.')
+        printf("  %-11s %s\n", "test", "verify this build (a command of the script ./sasbench)");
     printf("\nhelp COMMAND     its arguments and options\nhelp columns     the columns of a run's table\n"
            "--version        version, commit, compiler, libraries, instruction set\n");
-    fputs(exit_text, stdout);
+    printf("\n%s\n", commands_exit);
 }
 
 static void help_command(const struct command *command)
@@ -175,17 +49,19 @@ static void help_command(const struct command *command)
     snprintf(text, sizeof text, "%s.", command->summary);
     putchar('\n');
     table_text(stdout, 0, text);
-    for (int k = 0, shown = 0; k < OPTIONS; k++) {
-        const struct named *o = &options[k];
+    int shown = 0;
+    for (const struct named *o = options; o->name; o++) {
         char brief[8] = "";
-        if (!strchr(command->options, o->letter))
+        if (!command_takes(command, o))
             continue;
         if (islower(o->letter))
             snprintf(brief, sizeof brief, "-%c, ", o->letter);
         snprintf(text, sizeof text, "--%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
         printf("%s  %-4s%-17s %s\n", shown++ ? "" : "\nOptions:\n", brief, text, o->text);
     }
-    fputs(exit_text, stdout);
+    if (command->example)
+        printf("\nExample: %s %s\n", program_called(), command->example);
+    printf("\n%s\n", commands_exit);
 }
 
 /* `text` NULL: OpenMP's default, from its own variable or the machine's processors. */
@@ -221,8 +97,8 @@ static void option_meant(const struct command *command, int letter, const char *
     struct suggestion suggestion = suggestion_begin(option);
     const char *bare = letter == 's' ? "SCENE" : letter == 'a' ? "SPEC" : "\n";
     suggestion.before = "--";
-    for (const struct named *o = options; o < options + OPTIONS; o++)
-        if (strchr(command->options, o->letter))
+    for (const struct named *o = options; o->name; o++)
+        if (command_takes(command, o))
             suggestion_offer(&suggestion, o->name);
     suggestion_text(&suggestion, meant);
     if (strstr(command->arguments, bare))
@@ -234,8 +110,8 @@ static enum status option_refuse(const struct command *command, const char *opti
                                  const char *meant)
 {
     char accepted[160] = "";
-    for (const struct named *o = options; o < options + OPTIONS; o++)
-        if (strchr(command->options, o->letter))
+    for (const struct named *o = options; o->name; o++)
+        if (command_takes(command, o))
             text_append(accepted, sizeof accepted, "%s--%s", *accepted ? ", " : "", o->name);
     return status_set(STATUS_INVALID, "%s: option '%s' %s%s accepted: %s", command->name, option, fault, meant,
                       *accepted ? accepted : "none");
@@ -259,7 +135,7 @@ static void option_given(char *const *argv, int letter, char *text, size_t size)
     if (optarg && optarg == word) /* its value is an argument of its own */
         word = argv[optind - 2];
     bool is_long = strncmp(word, "--", 2) == 0 && (letter != '?' || !optopt);
-    for (const struct named *o = options; o < options + OPTIONS && letter == '?'; o++) /* one without a value has one */
+    for (const struct named *o = options; o->name && letter == '?'; o++) /* one without a value has one */
         is_long |= o->letter == optopt && strncmp(word, "--", 2) == 0;
     if (is_long)
         snprintf(text, size, "%.*s", (int)strcspn(word, "="), word);
@@ -275,8 +151,8 @@ static enum status empty_refuse(const struct command *command, const char *what)
 /* Arguments after the command's name. */
 static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
 {
-    struct option known[OPTIONS + 1] = {{.name = NULL}};
-    for (int k = 0; k < OPTIONS; k++)
+    struct option known[OPTIONS_MOST + 1] = {{.name = NULL}};
+    for (int k = 0; k < OPTIONS_MOST && options[k].name; k++)
         known[k] = (struct option){options[k].name, options[k].value ? required_argument : no_argument, NULL,
                                    options[k].letter};
     enum status status = STATUS_OK;
@@ -339,7 +215,7 @@ static bool is_option(const char *name)
     const char *bare = name + strspn(name, "-");
     const size_t length = strcspn(bare, "=");
     bool is = false;
-    for (const struct named *o = options; o < options + OPTIONS && *name == '-'; o++)
+    for (const struct named *o = options; o->name && *name == '-'; o++)
         is |= name[1] == '-' ? strncmp(bare, o->name, length) == 0 && !o->name[length] : *bare == o->letter && !bare[1];
     return is;
 }
@@ -348,15 +224,15 @@ static enum status command_find(const char *name, const struct command **found)
 {
     char names[300] = "", meant[SUGGESTION_TEXT];
     struct suggestion suggestion = suggestion_begin(name);
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
-        if (strcmp(commands[k].name, name) == 0) {
-            *found = &commands[k];
+    for (const struct command *c = commands; c->name; c++) {
+        if (strcmp(c->name, name) == 0) {
+            *found = c;
             return STATUS_OK;
         }
-        if (commands[k].hidden)
+        if (c->hidden)
             continue;
-        text_append(names, sizeof names, "%s, ", commands[k].name);
-        suggestion_offer(&suggestion, commands[k].name);
+        text_append(names, sizeof names, "%s, ", c->name);
+        suggestion_offer(&suggestion, c->name);
     }
     suggestion_offer(&suggestion, "--help");
     suggestion_offer(&suggestion, "--version");
@@ -402,32 +278,53 @@ static enum status ranks_share(const struct command *command, const struct task 
     return ranks_begin();
 }
 
+/* Threads sleep while they wait for each other: where other work holds a core, spinning ones take up to a hundred times
+   longer, and every time that is reported would be theirs. OpenMP reads it before main begins. */
+static void threads_sleep(char **argv)
+{
+    if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
+        execv("/proc/self/exe", argv);
+}
+
+/* Helps that no command has; false where it is none of them. */
+static bool helped_otherwise(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "", *topic = argc > 2 ? argv[2] : "";
+    if (strcmp(name, "complete") == 0)
+        command_complete(argc - 2, argv + 2);
+    else if (strcmp(name, "--version") == 0)
+        version();
+    else if (strcmp(name, "help") == 0 && strcmp(topic, "columns") == 0)
+        table_columns(stdout);
+    else if (strcmp(name, "help") == 0 && strcmp(topic, "manual") == 0)
+        command_manual();
+    else
+        return false;
+    return true;
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc < 2 ? "" : argv[1];
     const struct command *command = NULL;
     struct task task = {0};
     bool helped = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;
+    threads_sleep(argv);
     streams_open();
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error where it is written */
-    const bool versioned = strcmp(name, "--version") == 0;
     enum status status = isa_check();
-    const bool columns = strcmp(name, "help") == 0 && argc > 2 && strcmp(argv[2], "columns") == 0;
-    if (status == STATUS_OK && strcmp(name, "help") == 0 && argc > 2 && !columns)
+    const bool otherwise = status == STATUS_OK && helped_otherwise(argc, argv);
+    if (status == STATUS_OK && !otherwise && strcmp(name, "help") == 0 && argc > 2)
         status = command_find(argv[2], &command);
-    else if (status == STATUS_OK && !helped && !versioned)
+    else if (status == STATUS_OK && !otherwise && !helped)
         status = command_find(name, &command);
     if (status == STATUS_OK && command && !helped)
         status = parse(command, argc - 1, argv + 1, &task, &helped);
-    if (status == STATUS_OK && versioned)
-        version();
-    else if (status == STATUS_OK && columns)
-        table_columns(stdout);
-    else if (status == STATUS_OK && helped && command)
+    if (status == STATUS_OK && helped && command)
         help_command(command);
-    else if (status == STATUS_OK && helped)
+    else if (status == STATUS_OK && helped && !otherwise)
         help();
-    else if (status == STATUS_OK) {
+    else if (status == STATUS_OK && !otherwise) {
         if (ranks_started() > 1 && !task.shard)
             status = ranks_share(command, &task);
         if (status == STATUS_OK && (command->supervised || ranks_count() > 1))

@@ -310,7 +310,7 @@ static enum status findings_add(struct contest *contest, const struct ab_effort 
 
 static enum status unit_make(struct contest *contest, const char *scene, const char *spec, struct unit *unit)
 {
-    const char *path = diff_text(contest->diff, "%s/%s.cfg", SCENE_DIRECTORY, scene);
+    const char *path = diff_text(contest->diff, "%s/%s.cfg", data_path(DATA_SCENES), scene);
     if (!path)
         return STATUS_FAILED;
     if (access(path, R_OK) != 0)
@@ -323,7 +323,7 @@ static enum status unit_make(struct contest *contest, const char *scene, const c
 static enum status scene_check(const char *name)
 {
     struct scene scene;
-    enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    enum status status = scene_load(name, data_path(DATA_SCENES), &scene);
     if (status == STATUS_OK)
         scene_free(&scene);
     return status;

@@ -74,7 +74,7 @@ static enum status scene_find(struct worker *worker, const char *name, struct wo
         free(scene);
         return status_set(STATUS_FAILED, "no memory for the scene %s", name);
     }
-    enum status status = scene_load(name, SCENE_DIRECTORY, &scene->scene);
+    enum status status = scene_load(name, data_path(DATA_SCENES), &scene->scene);
     if (status == STATUS_OK) {
         status = scene_echoes(&scene->scene, &scene->echoes[PRECISION_DOUBLE]);
         if (status != STATUS_OK)

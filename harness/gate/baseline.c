@@ -95,7 +95,7 @@ static enum status measure_scene(const char *name, const struct spec *specs, int
 {
     int first = *row_count;
     struct session session;
-    enum status status = scene_load(name, SCENE_DIRECTORY, scene);
+    enum status status = scene_load(name, data_path(DATA_SCENES), scene);
     if (status == STATUS_OK)
         status = session_open(scene, &session);
     if (status != STATUS_OK)
@@ -175,7 +175,7 @@ enum status baseline_write(const char *path)
     int count, name_count = 0, first = 0, last, lock = -1;
     enum status status = specs_make(&specs, &count);
     if (status == STATUS_OK)
-        status = scene_names(SCENE_DIRECTORY, &names, &name_count);
+        status = scene_names(data_path(DATA_SCENES), &names, &name_count);
     if (status == STATUS_OK)
         status = folder_take_around(path, &lock);
     while (first < name_count && strncmp(names[first], GATE, strlen(GATE)) != 0)

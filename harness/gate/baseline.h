@@ -19,7 +19,4 @@ enum status baseline_accept(const struct algorithm *algorithm, const struct meas
    scene_load, session_open, folder_take_around, baseline_accept and measurements_write; nothing is then written. */
 enum status baseline_write(const char *path);
 
-/* The path of the reviewed one. */
-#define BASELINE_PATH SASBENCH_ROOT "/results/baseline.csv"
-
 #endif

@@ -100,7 +100,7 @@ static const struct assumptions *set_of(const char *name)
 bool assumed_scene_exists(const char *name)
 {
     char path[4200];
-    snprintf(path, sizeof path, "%s/%.*s.cfg", SCENE_DIRECTORY, (int)strcspn(name, "@"), name);
+    snprintf(path, sizeof path, "%s/%.*s.cfg", data_path(DATA_SCENES), (int)strcspn(name, "@"), name);
     return *name && access(path, R_OK) == 0 && set_of(name);
 }
 
@@ -111,7 +111,7 @@ enum status assumed_scene_load(const char *name, struct scene *scene)
     if (!set)
         return status_set(STATUS_INVALID, "%s: no such assumptions", name);
     snprintf(plain, sizeof plain, "%.*s", (int)strcspn(name, "@"), name);
-    enum status status = scene_load(plain, SCENE_DIRECTORY, scene);
+    enum status status = scene_load(plain, data_path(DATA_SCENES), scene);
     if (status != STATUS_OK || set == assumption_sets || !assume(scene, set))
         return status;
     const size_t size = strlen(scene->name) + strlen(set->name) + 2;

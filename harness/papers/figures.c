@@ -172,7 +172,7 @@ static void image_use(struct drawing *drawing, const struct session *session, co
     if (drawing->images) {
         picture_name(drawing, set->images, set->scenes[s].scene, set->methods[m].label, path, sizeof path);
         snprintf(title, sizeof title, "%s: %s, %s", set->title, scene->name, set->methods[m].label);
-        report(drawing, plot_image(path, PLOT_DIRECTORY,
+        report(drawing, plot_image(path, data_path(DATA_PLOTS),
                                    &(struct image_picture){.image = image,
                                                            .title = title,
                                                            .footer = drawing->footer,
@@ -193,7 +193,7 @@ static enum status scene_use(struct drawing *drawing, int s, int first)
     struct scene scene;
     struct session session;
     const struct figures *set = drawing->set;
-    enum status status = scene_load(set->scenes[s].scene, SCENE_DIRECTORY, &scene);
+    enum status status = scene_load(set->scenes[s].scene, data_path(DATA_SCENES), &scene);
     if (status != STATUS_OK)
         return status;
     status = session_open(&scene, &session);
@@ -264,9 +264,9 @@ static void slices_draw(const struct drawing *drawing, const char *id, double mo
                                            .line_count = drawing->method_count,
                                            .panel_titles = titles,
                                            .lines = shown};
-    report(drawing, plot_slices(path, PLOT_DIRECTORY, &picture));
+    report(drawing, plot_slices(path, data_path(DATA_PLOTS), &picture));
     plot_path_svg(path);
-    report(drawing, plot_slices(path, PLOT_DIRECTORY, &picture));
+    report(drawing, plot_slices(path, data_path(DATA_PLOTS), &picture));
 }
 
 static enum status set_draw(struct drawing *drawing)
@@ -310,7 +310,7 @@ static enum status layout_draw(struct drawing *drawing)
     fputs("target,x_m,r_m,added\n", file.stream);
     for (int s = 0; s < SCENES_MAX && set->scenes[s].scene && status == STATUS_OK; s++) {
         struct scene scene;
-        status = scene_load(set->scenes[s].scene, SCENE_DIRECTORY, &scene);
+        status = scene_load(set->scenes[s].scene, data_path(DATA_SCENES), &scene);
         for (int t = 0; t < scene.point_count && status == STATUS_OK; t++) {
             bool added = t >= set->scenes[s].targets;
             char name[16] = "";
@@ -323,7 +323,7 @@ static enum status layout_draw(struct drawing *drawing)
     }
     status = text_file_close(&file, status);
     if (status == STATUS_OK)
-        report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv, drawing->footer));
+        report(drawing, plot_csv(picture, data_path(DATA_PLOTS), "layout.gp", csv, drawing->footer));
     return status;
 }
 
@@ -368,7 +368,8 @@ static enum status records_draw(const struct acquisition *a, const double comple
         for (int p = 0; p < a->pings; p++)
             pixels[(size_t)n * (size_t)a->pings + (size_t)p] = records[(size_t)p * (size_t)a->samples + (size_t)n];
     provenance_line(footer);
-    if (plot_image(path, PLOT_DIRECTORY, &(struct image_picture){.image = &image, .title = title, .footer = footer})
+    if (plot_image(path, data_path(DATA_PLOTS),
+                   &(struct image_picture){.image = &image, .title = title, .footer = footer})
         != STATUS_OK) {
         shown_note(status_message());
         ++*undrawn;
@@ -409,7 +410,7 @@ static enum status echo_figures_draw(const char *directory, int *undrawn)
         complete = is_drawn(directory, step, path) && complete;
     if (complete)
         return STATUS_OK;
-    enum status status = scene_load("pf05/nine", SCENE_DIRECTORY, &scene);
+    enum status status = scene_load("pf05/nine", data_path(DATA_SCENES), &scene);
     if (status != STATUS_OK)
         return status;
     status = spec_parse(POLAR_4, &spec);

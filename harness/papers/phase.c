@@ -214,7 +214,7 @@ static enum status study_draw(const struct study *study, const struct csv *publi
     snprintf(title, sizeof title, "%.300s: phase error of receiver %d (d = %g m)", study_title(study),
              study->receiver[receiver], study->offset[receiver]);
     provenance_line(footer);
-    return plot_phase(path, PLOT_DIRECTORY,
+    return plot_phase(path, data_path(DATA_PLOTS),
                       &(struct slices_picture){.title = title,
                                                .footer = footer,
                                                .panel_count = RANGES,
@@ -249,7 +249,7 @@ enum status phase_scene_study(const char *name, const char *directory, bool take
     struct csv published;
     char path[4200], rest[40];
     int lock = -1;
-    enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    enum status status = scene_load(name, data_path(DATA_SCENES), &scene);
     if (status != STATUS_OK)
         return status;
     status = published_read(&published);

@@ -132,7 +132,7 @@ static enum status seed_follow(int seed, const char *path, FILE *file, int *coun
     random_scene_write(drawn.stream, (uint64_t)seed);
     status = text_file_close(&drawn, STATUS_OK);
     if (status == STATUS_OK)
-        status = scene_load(path, SCENE_DIRECTORY, &scene);
+        status = scene_load(path, data_path(DATA_SCENES), &scene);
     if (status != STATUS_OK)
         return status;
     status = session_open(&scene, &session);

@@ -30,7 +30,7 @@ static void word_append(char *text, size_t size, const char *word)
 void measured_again(const struct measurement *row, char *text, size_t size)
 {
     char word[1000];
-    snprintf(word, sizeof word, "%s/%.500s.cfg", SCENE_DIRECTORY, row->scene);
+    snprintf(word, sizeof word, "%s/%.500s.cfg", data_path(DATA_SCENES), row->scene);
     const bool shipped = place_is_file(word);
     snprintf(word, sizeof word, "%.500s%s", row->scene, shipped ? "" : ".cfg");
     snprintf(text, size, "./sasbench run");

@@ -1,5 +1,6 @@
 /* The papers' tables, figures and printed numbers (published.h). */
 #include "report/published.h"
+#include "files/paths.h"
 
 #include <math.h>
 #include <string.h>
@@ -96,7 +97,7 @@ static const char *const columns[] = {"table", "target", "method", "quantity", "
 
 enum status published_read(struct csv *csv)
 {
-    enum status status = csv_read(SASBENCH_ROOT "/results/published.csv", CSV_TAIL_KEEP, csv);
+    enum status status = csv_read(data_path(DATA_PUBLISHED), CSV_TAIL_KEEP, csv);
     return status == STATUS_OK ? csv_columns(csv, columns, NULL) : status;
 }
 

@@ -97,7 +97,7 @@ void report_sentences_show(struct page *page, const struct results *results, int
 void report_overview_show(struct page *page, const struct points *points, int scene_count)
 {
     struct families families;
-    families_read(PLOT_DIRECTORY, &families);
+    families_read(data_path(DATA_PLOTS), &families);
     page_heading(page, 2, "overview", "All scenes");
     page_paragraph(page,
                    "Error against speed-up over the scalar reference loop, the same axes everywhere: faster is to "
@@ -140,7 +140,7 @@ enum status report_fronts_show(struct page *page, const struct points *points, i
 {
     struct families families;
     enum status status = STATUS_OK;
-    families_read(PLOT_DIRECTORY, &families);
+    families_read(data_path(DATA_PLOTS), &families);
     page_heading(page, 2, "fronts", "Pareto fronts");
     for (int s = 0; s < scene_count && status == STATUS_OK; s++) {
         char id[32];

@@ -228,7 +228,7 @@ static enum status scene_show(struct page *page, struct picture *list, int list_
     thumbnails_begin(&thumbnails);
     for (int k = 0; k < list_count && k < shown; k++)
         list[k].thumbnail = thumbnails_add(&thumbnails, list[k].path, k ? pixels : SLICES_LARGER * pixels);
-    thumbnails_draw(&thumbnails, PLOT_DIRECTORY);
+    thumbnails_draw(&thumbnails, data_path(DATA_PLOTS));
     for (int k = 0; k < list_count && k < shown && status == STATUS_OK; k++) {
         const int small = thumbnails_file(&thumbnails, list[k].thumbnail);
         if (k == 1)

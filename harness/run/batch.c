@@ -1,5 +1,6 @@
 /* Scenes measured with algorithms (batch.h). */
 #include "run/batch.h"
+#include "files/paths.h"
 
 #include <math.h>
 #include <omp.h>
@@ -322,8 +323,9 @@ enum status batch_join(struct batch *batch, bool *whole)
 {
     *whole = !is_shared(batch);
     if (batch->shard.count > 0)
-        printf("\nShard %d/%d: %d of %d cells are in %s. When all are done: ./sasbench merge FOLDER ... -o DIR\n",
-               batch->shard.number, batch->shard.count, batch->rows, batch->cells.count, batch->directory);
+        printf("\nShard %d/%d: %d of %d cells are in %s. When all are done: %s merge FOLDER ... -o DIR\n",
+               batch->shard.number, batch->shard.count, batch->rows, batch->cells.count, batch->directory,
+               program_called());
     if (ranks_count() == 1 || ranks_number() > 0)
         return STATUS_OK;
     ranks_join();

@@ -1,5 +1,6 @@
 /* The results of a run (run_summary.h). */
 #include "run/run_summary.h"
+#include "files/paths.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -166,7 +167,9 @@ static void refused_print(FILE *stream, const struct run *run)
     for (int n = 0; n < count; n++) {
         const char *algorithm = list[n].row->algorithm;
         condition_name(list[n].row->reason, name[0], sizeof name[0]);
-        text_append(text, sizeof text, "%s%.*s%s on %d %s%s%s%s", n ? ", " : "Refused (./sasbench check SCENE: why): ",
+        if (n == 0)
+            text_append(text, sizeof text, "Refused (%s check SCENE: why): ", program_called());
+        text_append(text, sizeof text, "%s%.*s%s on %d %s%s%s%s", n ? ", " : "",
                     list[n].several ? family_length(algorithm) : (int)strlen(algorithm), algorithm,
                     list[n].several ? "*" : "", list[n].scenes, list[n].scenes > 1 ? "scenes" : "scene",
                     *name[0] ? " (" : "", name[0], *name[0] ? ")" : "");

@@ -20,7 +20,7 @@ enum status scenes_load(const char *command, int given_count, const char *const 
     int name_count = 0;
     enum status status = STATUS_OK;
     if (given_count == 0)
-        status = scene_names(SCENE_DIRECTORY, &names, &name_count);
+        status = scene_names(data_path(DATA_SCENES), &names, &name_count);
     const char *const *list = given_count ? given : (const char *const *)names;
     int total = given_count ? given_count : name_count;
     *count = 0;
@@ -28,7 +28,7 @@ enum status scenes_load(const char *command, int given_count, const char *const 
     if (status == STATUS_OK && !*scenes)
         status = status_set(STATUS_FAILED, "no memory for %d scenes", total);
     for (int k = 0; k < total && status == STATUS_OK; k++) {
-        status = scene_load(list[k], SCENE_DIRECTORY, &(*scenes)[*count]);
+        status = scene_load(list[k], data_path(DATA_SCENES), &(*scenes)[*count]);
         for (int before = 0; before < *count && status == STATUS_OK; before++) {
             if (strcmp((*scenes)[before].path, (*scenes)[*count].path) == 0) {
                 status =

@@ -81,7 +81,7 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
                                           .target_count = scene->point_count};
     if (pictures->queue.count == PLOT_QUEUE_MOST)
         plot_queue_draw(&pictures->queue, tell, pictures);
-    if (plot_image_later(&pictures->queue, path, PLOT_DIRECTORY, &picture) != STATUS_OK)
+    if (plot_image_later(&pictures->queue, path, data_path(DATA_PLOTS), &picture) != STATUS_OK)
         tell(pictures);
     for (int t = 0; t < scene->point_count; t++) {
         struct slice_line *line = &pictures->lines[t * pictures->spec_count + index];
@@ -134,7 +134,7 @@ void pictures_draw(struct pictures *pictures)
         for (int svg = 0; svg < 2; svg++) { /* papers use curves, too */
             if (pictures->queue.count == PLOT_QUEUE_MOST)
                 plot_queue_draw(&pictures->queue, tell, pictures);
-            if (plot_slices_later(&pictures->queue, path, PLOT_DIRECTORY, &picture) != STATUS_OK)
+            if (plot_slices_later(&pictures->queue, path, data_path(DATA_PLOTS), &picture) != STATUS_OK)
                 tell(pictures);
             plot_path_svg(path);
         }

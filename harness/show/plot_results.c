@@ -85,7 +85,7 @@ static void draw(struct drawer *drawer, const char *scene, const char *name, con
             plot_variable(plot.preamble, "footer", drawer->footer);
             status = write(plot.preamble, of);
         }
-        if (plot_finish(&plot, status, &drawer->queue, PLOT_DIRECTORY, script) != STATUS_OK)
+        if (plot_finish(&plot, status, &drawer->queue, data_path(DATA_PLOTS), script) != STATUS_OK)
             report(drawer);
     }
 }

@@ -56,12 +56,12 @@ static enum status scene_find(const char *name)
     if (end && strcmp(end, ".cfg") == 0)
         snprintf(path, sizeof path, "%s", name);
     else
-        snprintf(path, sizeof path, "%s/%s.cfg", SCENE_DIRECTORY, name);
+        snprintf(path, sizeof path, "%s/%s.cfg", data_path(DATA_SCENES), name);
     return access(path, R_OK) == 0 ? STATUS_OK
                                    : status_set(STATUS_INVALID,
                                                 "%s: no scene can be read there, must be a path to a "
                                                 ".cfg file or a name below %s",
-                                                path, SCENE_DIRECTORY);
+                                                path, data_path(DATA_SCENES));
 }
 
 static enum status scenes_choose(const struct stability_request *request, struct run *run)
@@ -72,7 +72,7 @@ static enum status scenes_choose(const struct stability_request *request, struct
     const char *const *list = request->scene_count ? request->scenes : quick_scenes;
     const char *before = request->scene_count ? "" : SCENES_EXTREME "/";
     if (!request->scene_count && !request->quick) {
-        status = scene_names(SCENE_DIRECTORY "/" SCENES_EXTREME, &names, &count);
+        status = scene_names(data_path(DATA_EXTREME), &names, &count);
         list = (const char *const *)names;
     }
     run->scenes = status == STATUS_OK ? calloc((size_t)count + 1, sizeof *run->scenes) : NULL;
@@ -99,7 +99,7 @@ static enum status scene_is_mine(const struct cells *cells, const char *name, co
                                  const struct spec *exact, bool *mine)
 {
     struct scene scene;
-    const enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    const enum status status = scene_load(name, data_path(DATA_SCENES), &scene);
     *mine = shard->number == 1;
     if (status != STATUS_OK)
         return status == STATUS_INVALID ? STATUS_OK : status;
@@ -121,7 +121,7 @@ static enum status scenes_share(struct run *run, const struct shard *shard)
     omp_set_num_threads(1);
     for (int k = 0; k < run->scene_count && status != STATUS_FAILED; k++) {
         struct scene scene;
-        status = scene_load(run->scenes[k], SCENE_DIRECTORY, &scene);
+        status = scene_load(run->scenes[k], data_path(DATA_SCENES), &scene);
         if (status == STATUS_OK) {
             status = cells_add(&cells, &scene, 1, &exact);
             scene_free(&scene);
@@ -204,7 +204,7 @@ static enum status scene_check(struct run *run, int index)
     struct trial trial;
     for (int k = 0; k < run->spec_count; k++)
         rows[k] = (struct stability_row){run->scenes[index], &run->specs[k], {0}};
-    enum status status = scene_load(run->scenes[index], SCENE_DIRECTORY, &scene);
+    enum status status = scene_load(run->scenes[index], data_path(DATA_SCENES), &scene);
     if (status == STATUS_INVALID) {
         for (int k = 0; k < run->spec_count; k++)
             rows[k].verdict = refusal_verdict(status_message());
@@ -252,7 +252,7 @@ static enum status run_write(const struct run *run, const char *directory)
     if (status == STATUS_OK)
         status = stability_expected_write(expected, count, run->rows);
     provenance_line(footer);
-    if (status == STATUS_OK && plot_csv(picture, PLOT_DIRECTORY, "stability.gp", measured, footer) != STATUS_OK)
+    if (status == STATUS_OK && plot_csv(picture, data_path(DATA_PLOTS), "stability.gp", measured, footer) != STATUS_OK)
         shown_note(status_message());
     return status;
 }

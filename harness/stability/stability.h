@@ -5,8 +5,6 @@
 
 #include "imaging/spec.h"
 
-#define STABILITY_EXPECTED SASBENCH_ROOT "/results/stability.csv"
-
 struct stability_request {
     int scene_count, spec_count;
     const char *const *scenes; /* names or paths; none: all of scenes/extreme, or with `quick` one of each family */

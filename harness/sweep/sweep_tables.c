@@ -59,7 +59,7 @@ const struct scene *scene_measured(const struct csv *csv, const struct scene *sc
     *loaded = (struct scene){0};
     for (int k = 0; k < count; k++)
         scene = strcmp(scenes[k].name, name) == 0 ? &scenes[k] : scene;
-    if (!scene && scene_load(name, SCENE_DIRECTORY, loaded) != STATUS_OK)
+    if (!scene && scene_load(name, data_path(DATA_SCENES), loaded) != STATUS_OK)
         return NULL;
     scene = scene ? scene : loaded;
     snprintf(key, sizeof key, "scene %s", name);

@@ -1,4 +1,5 @@
 #include "tests/planted.h"
+#include "files/paths.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -73,7 +74,7 @@ struct evaluation evaluation_of(struct measured *measured, const char *id, enum 
     struct claims claims;
     struct evaluation evaluation = {.evidence = ""};
     bool found = false;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (int k = 0; k < claims.count && !found; k++)
         if (strcmp(claims.claims[k].id, id) == 0) {
             evaluation = claim_evaluate(&claims, &claims.claims[k], scheme, measured);

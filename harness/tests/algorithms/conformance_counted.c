@@ -1,4 +1,5 @@
 #include "tests/algorithms/conformance_counted.h"
+#include "files/paths.h"
 
 #include <math.h>
 #include <omp.h>
@@ -107,7 +108,7 @@ static void check_baseline(const struct conformance *c, const struct setting *se
     struct csv csv;
     int rows = 0;
     (void)setting;
-    conformance_need(c, csv_read(BASELINE_PATH, CSV_TAIL_KEEP, &csv));
+    conformance_need(c, csv_read(data_path(DATA_BASELINE), CSV_TAIL_KEEP, &csv));
     for (int row = 0; row < csv.row_count; row++)
         rows += strcmp(csv_cell(&csv, row, csv_column(&csv, "algorithm")), c->algorithm->name) == 0;
     promise(c, "results/baseline.csv", rows > 0,

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "files/paths.h"
 #include "files/csv.h"
 #include "bench/bench.h"
 #include "tests/support.h"
@@ -85,7 +86,7 @@ static void cells_are_refused(void **state)
     }
     /* Those that we ship are right: what is refused is the folder, behind them. */
     support_write("file", "");
-    assert_int_equal(bench_goals(BENCH_FOLDER, path_of("file/in")), STATUS_INVALID);
+    assert_int_equal(bench_goals(data_path(DATA_BENCH), path_of("file/in")), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "file"));
     assert_null(strstr(status_message(), "goals.csv"));
 }

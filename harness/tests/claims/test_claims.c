@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "files/paths.h"
 #include "command/task.h"
 #include "measure/session.h"
 #include "claims/reproduce.h"
@@ -22,7 +23,7 @@ static void all_claims_are_read(void **state)
     } papers[] = {{"BP22", 42}, {"ZP15", 16}, {"LBF21", 77}, {"SQ18", 18}, {"PF05", 21}};
     struct claims claims;
     int row = 0;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (size_t p = 0; p < sizeof papers / sizeof *papers; p++)
         for (int k = 0; k < papers[p].count; k++, row++) {
             assert_true(row < claims.count);
@@ -196,7 +197,7 @@ static void needs_are_accepted(void **state)
     struct claims claims;
     struct need needs[256];
     int count = 0, wide = 0;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (int k = 0; paper_tables[k].id; k++)
         count = table_needs(paper_tables[k].id, needs, count, 256);
     for (int n = 0; n < claims.count; n++)

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "files/paths.h"
 #include "claims/reproduce.h"
 #include "tests/planted.h"
 
@@ -121,7 +122,7 @@ static void halves_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {IN_FOLDER(pages_say_what_files_say), IN_FOLDER(halves_are_refused)};
-    if (claims_read(CLAIMS_FILE, &claims) != STATUS_OK)
+    if (claims_read(data_path(DATA_CLAIMS), &claims) != STATUS_OK)
         return 1;
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     claims_free(&claims);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "files/paths.h"
 #include "papers/assumptions.h"
 #include "tests/planted.h"
 
@@ -143,7 +144,7 @@ static void printed_numbers_hold(void **state)
     (void)state;
     struct claims claims;
     int held = 0;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (int k = 0; k < claims.count; k++) {
         const struct claim *claim = &claims.claims[k];
         struct measured measured;

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "files/paths.h"
 #include "command/task.h"
 #include "measure/outcome.h"
 #include "papers/assumptions.h"
@@ -149,7 +150,7 @@ static void nothing_is_said_without_measurements(void **state)
     struct claims claims;
     int count;
     assert_int_equal(measured_read(folder, &measured), STATUS_OK);
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (int k = 0; k < claims.count; k++) {
         if (claim_has(&claims, &claims.claims[k], "flops") /* from plans of full-size scenes, which take seconds */
             || claim_has(&claims, &claims.claims[k], "planned(") || claim_has(&claims, &claims.claims[k], "filtered("))
@@ -231,7 +232,7 @@ static void every_line_can_be_measured(void **state)
     struct claims claims;
     struct need needs[256];
     int count, need_count = 0;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (int k = 0; paper_tables[k].id; k++)
         need_count = table_needs(paper_tables[k].id, needs, need_count, 256);
     for (int n = 0; n < claims.count; n++)

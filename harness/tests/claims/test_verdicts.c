@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "files/paths.h"
 #include "scene/random.h"
 #include "measure/outcome.h"
 #include "measure/session.h"
@@ -305,7 +306,7 @@ static void each_verdict_can_flip(void **state)
     (void)state;
     enum { DRAWS_MAX = 6000 };
     struct claims claims;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (int k = 0; k < claims.count; k++) {
         const struct claim *claim = &claims.claims[k];
         struct measured measured;
@@ -346,7 +347,7 @@ static void evidence_is_whole(void **state)
 {
     (void)state;
     struct claims claims;
-    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    assert_int_equal(claims_read(data_path(DATA_CLAIMS), &claims), STATUS_OK);
     for (int k = 0; k < claims.count; k++) {
         const struct claim *claim = &claims.claims[k];
         struct measured measured;

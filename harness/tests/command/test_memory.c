@@ -65,7 +65,8 @@ static void processes_take_what_plans_say(void **state)
             "image", "--scene", scenes[k / SPECS], "-a", specs[k % SPECS], "-o", "x.mat", "-t", "1"});
     for (int k = 0; k < SCENES; k++) {
         struct scene scene;
-        if (scene_load(strchr(scenes[k], '.') ? path_in(scenes[k]) : scenes[k], SCENE_DIRECTORY, &scene) != STATUS_OK)
+        if (scene_load(strchr(scenes[k], '.') ? path_in(scenes[k]) : scenes[k], data_path(DATA_SCENES), &scene)
+            != STATUS_OK)
             fail_msg("%s", status_message());
         for (int n = 0; n < SPECS; n++) {
             const double said = plan_bytes(specs[n], &scene), ratio = measured[k][n] / said;
@@ -87,7 +88,7 @@ static void budgets_are_of_the_process(void **state)
     (void)state;
     struct scene scene;
     struct choice choice, less;
-    assert_int_equal(scene_load("study/swath", SCENE_DIRECTORY, &scene), STATUS_OK);
+    assert_int_equal(scene_load("study/swath", data_path(DATA_SCENES), &scene), STATUS_OK);
     const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     assert_int_equal(choice_make(&problem, NULL, &(struct budget){.error = 1e-2, .bytes = 1e12}, &choice), STATUS_OK);
     assert_true(choice.found && choice.list[0].bytes > process_bytes(&problem, 0));
@@ -124,7 +125,7 @@ static void long_write(void)
                            "aperture_limit = 0.1;\ntargets = { points = ( { x = 0.1; r = 30.0; } ); };\n"
                            "image = { x = { first = -100.0; step = 0.04; count = 5000; };\n"
                            "          r = { first = 20.0; step = 0.04; count = 400; }; };\n");
-    assert_int_equal(scene_load(path_in("long.cfg"), SCENE_DIRECTORY, &scene), STATUS_OK);
+    assert_int_equal(scene_load(path_in("long.cfg"), data_path(DATA_SCENES), &scene), STATUS_OK);
     const struct echo_notes notes = scene_notes(&scene);
     assert_int_equal(simulation_open(&scene, 1, &simulation), STATUS_OK);
     const struct sample_source source = {simulation_exponent(simulation), pings_make, simulation};

@@ -89,7 +89,7 @@ static void each_algorithm_says_how_far_it_is(void **state)
     (void)state;
     struct scene scene;
     struct session session;
-    assert_int_equal(scene_load("study/quick", SCENE_DIRECTORY, &scene), STATUS_OK);
+    assert_int_equal(scene_load("study/quick", data_path(DATA_SCENES), &scene), STATUS_OK);
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     int imaged = 0;
     for (int k = 0; algorithms[k]; k++) {

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "files/paths.h"
 #include "backprojection/bp.h"
 #include "contract/delay.h"
 #include "gate/baseline.h"
@@ -28,7 +29,7 @@ static void check_baseline(const char *isa)
     setenv("SASBENCH_ISA", isa, 1);
     assert_int_equal(baseline_write(path_of("new.csv")), STATUS_OK);
     unsetenv("SASBENCH_ISA");
-    assert_int_equal(diff_results(BASELINE_PATH, path_of("new.csv"), &diff), STATUS_OK);
+    assert_int_equal(diff_results(data_path(DATA_BASELINE), path_of("new.csv"), &diff), STATUS_OK);
     if (diff_status(&diff) != STATUS_OK || diff.finding_count < 500) {
         diff_print(&diff, stdout);
         fail_msg("%s code differs from results/baseline.csv (./sasbench baseline writes a new one, to be reviewed)",

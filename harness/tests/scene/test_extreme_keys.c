@@ -15,7 +15,7 @@ static enum status load(const char *text, struct scene *scene)
     char whole[1000];
     snprintf(whole, sizeof whole, "%s%s", base, text);
     support_write("scene.cfg", whole);
-    return scene_load(path_of("scene.cfg"), SCENE_DIRECTORY, scene);
+    return scene_load(path_of("scene.cfg"), data_path(DATA_SCENES), scene);
 }
 
 static struct scene loaded(const char *text)

@@ -95,14 +95,14 @@ static void reference_is_exact_on_extreme_scenes(void **state)
     (void)state;
     char **names;
     int count, read = 0;
-    assert_int_equal(scene_names(SCENE_DIRECTORY "/" SCENES_EXTREME, &names, &count), STATUS_OK);
+    assert_int_equal(scene_names(data_path(DATA_EXTREME), &names, &count), STATUS_OK);
     for (int k = 0; k < count; k++) {
         char name[200];
         struct scene scene;
         struct echoes echoes;
         struct image image;
         snprintf(name, sizeof name, SCENES_EXTREME "/%s", names[k]);
-        if (scene_load(name, SCENE_DIRECTORY, &scene) != STATUS_OK)
+        if (scene_load(name, data_path(DATA_SCENES), &scene) != STATUS_OK)
             continue; /* which ones must be: test_stability */
         if (!exact_ideal_excludes(&scene)) {
             const struct problem problem =

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "files/paths.h"
 #include "contract/delay.h"
 #include "stability/stability.h"
 #include "stability/stability_table.h"
@@ -285,7 +286,7 @@ static void mistakes_are_refused(void **state)
     (void)state;
     const char *const names[] = {"extreme/nosuch"};
     struct stability_request request = {.scene_count = 1, .scenes = names, .directory = path_of("out"), .quick = true};
-    assert_int_equal(stability_run(&request, STABILITY_EXPECTED), STATUS_INVALID);
+    assert_int_equal(stability_run(&request, data_path(DATA_STABILITY)), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "extreme/nosuch.cfg: no scene can be read there"));
     assert_false(support_exists("out"));
 }
