@@ -24,7 +24,6 @@ grep -q "Next: .*sasbench report results/latest" out || die "run ends with: $(ta
 ! grep -q '\./sasbench' out || die "an installed program is not called ./sasbench"
 [ -s results/latest/measurements.csv ] && [ -s results/latest/study_installed-bp_nearest.png ] || die "results/latest lacks files"
 sasbench report results/latest >/dev/null && [ -s results/latest/report.html ] || die "no report"
-sasbench reproduce --quick bp22-2-1 >out 2>&1 || die "reproduce: $(cat out)"
 ! sasbench reproduce --docs >out 2>&1 || die "reproduce --docs has no folder to write into"
 ! sasbench --help | grep -q '^  test ' || die "'test' is the script's"
 
