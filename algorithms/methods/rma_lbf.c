@@ -5,9 +5,9 @@
        psi_i = -2 pi nu d + (pi/c) (d + 2 r v/(c cos th))^2 S^3/(F^2 r).
 
    `printed` takes theta at the carrier, sin th = c nu/(2 fc), which causes most of the error that the paper
-   reports, and the paper's Eqs. (11) to (17) one by one; `corrected` takes theta at F, and psi into the conversion. Error of the corrected phase: below 0.01 rad from 50 m on, falling with r
-   (rma_numeric has none); the image's error is then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m
-   on. */
+   reports, and the paper's Eqs. (11) to (17) one by one; `corrected` takes theta at F, and psi into the conversion.
+   Error of the corrected phase: below 0.01 rad from 50 m on, falling with r (rma_numeric has none); the image's error is
+   then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m on. */
 #include "range_migration/rma.h"
 
 static const struct rma_method method = {

@@ -1,5 +1,5 @@
-/* Files that come with the program. An installed program has them in ../share/sasbench of its own folder, so that it may
-   be moved with them; any other has those of the source folder that it was built from. */
+/* Files that come with the program. An installed program has them in ../share/sasbench of its own folder, so that it
+   may be moved with them; any other has those of the source folder that it was built from. */
 #ifndef SASBENCH_FILES_PATHS_H
 #define SASBENCH_FILES_PATHS_H
 

@@ -4,9 +4,9 @@
 
 #include "papers/measured.h"
 
-/* LBF21's method in two schemes, each with its own verdict: as the paper prints it (theta at the carrier, Eqs. (11) to (17),
-   sub-blocks of equal width with hard edges: section IV-C), and corrected (theta at F, blocks evenly spaced in 1/r that blend).
-   The paper's other methods have no sub-blocks and are the same in both. */
+/* LBF21's method in two schemes, each with its own verdict: as the paper prints it (theta at the carrier, Eqs. (11)
+   to (17), sub-blocks of equal width with hard edges: section IV-C), and corrected (theta at F, blocks evenly spaced in
+   1/r that blend). The paper's other methods have no sub-blocks and are the same in both. */
 enum scheme { SCHEME_PRINTED, SCHEME_CORRECTED, SCHEMES };
 /* "as printed", "corrected". */
 extern const char *const scheme_names[SCHEMES];
