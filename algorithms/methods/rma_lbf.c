@@ -6,8 +6,8 @@
 
    `printed` takes theta at the carrier, sin th = c nu/(2 fc), which causes most of the error that the paper
    reports, and the paper's Eqs. (11) to (17) one by one; `corrected` takes theta at F, and psi into the conversion.
-   Error of the corrected phase: below 0.01 rad from 50 m on, falling with r (rma_numeric has none); the image's error is
-   then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m on. */
+   Error of the corrected phase: below 0.01 rad from 50 m on, falling with r (rma_numeric has none); the error of the
+   image is then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m on. */
 #include "range_migration/rma.h"
 
 static const struct rma_method method = {

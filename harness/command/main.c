@@ -282,8 +282,11 @@ static enum status ranks_share(const struct command *command, const struct task 
    longer, and every time that is reported would be theirs. OpenMP reads it before main begins. */
 static void threads_sleep(char **argv)
 {
-    if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
-        execv("/proc/self/exe", argv);
+    char path[PATH_MAX]; /* and not /proc/self/exe, or the process would be called "exe" */
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+    path[length > 0 ? length : 0] = '\0';
+    if (length > 0 && !getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
+        execv(path, argv);
 }
 
 /* Helps that no command has; false where it is none of them. */

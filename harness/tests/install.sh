@@ -27,6 +27,17 @@ sasbench report results/latest >/dev/null && [ -s results/latest/report.html ] |
 ! sasbench reproduce --docs >out 2>&1 || die "reproduce --docs has no folder to write into"
 ! sasbench --help | grep -q '^  test ' || die "'test' is the script's"
 
+# The program sets OpenMP's waiting, and keeps its name.
+env -u OMP_WAIT_POLICY sasbench conformance bp_sinc >/dev/null 2>&1 &
+for ((k = 0; k < 100; k++)); do
+    sleep 0.05
+    ! grep -qz '^OMP_WAIT_POLICY=passive$' "/proc/$!/environ" || break
+done
+[ "$k" -lt 100 ] || die "OMP_WAIT_POLICY is not set"
+[ "$(cat "/proc/$!/comm")" = sasbench ] || die "the process is called $(cat "/proc/$!/comm")"
+kill $!
+wait $! 2>/dev/null || :
+
 # Every command has its section, with an example, as roff takes it.
 manual=$prefix/share/man/man1/sasbench.1
 commands=$(sasbench complete '' | grep -v '^-\|^help$')
