@@ -232,16 +232,21 @@ static void plans_do_not_count(void **state)
     struct grid grid = {-20, 0.02, 2000, 5, 0.02, 2000};
     struct problem problem = problem_make(&a, 1, &grid, PRECISION_FLOAT);
     assert_int_equal(spec_parse("bp_nearest:engine=general", &spec), STATUS_OK);
-    double begin = (double)clock();
-    assert_int_equal(algorithm_plan(spec.algorithm, &problem, spec.options, &plan), STATUS_OK);
-    double planned = (double)clock();
-    struct work work = spec.algorithm->work(plan);
-    double counted = (double)clock();
-    print_message("planned in %.3f s, counted in %.3f s of the processor\n", (planned - begin) / CLOCKS_PER_SEC,
-                  (counted - planned) / CLOCKS_PER_SEC);
+    struct work work = {0};
+    double least[2] = {INFINITY, INFINITY}; /* planning, counting: other work on the machine only adds to them */
+    for (int k = 0; k < 5; k++) {
+        const double begin = (double)clock();
+        assert_int_equal(algorithm_plan(spec.algorithm, &problem, spec.options, &plan), STATUS_OK);
+        const double planned = (double)clock();
+        work = spec.algorithm->work(plan);
+        least[0] = fmin(least[0], planned - begin);
+        least[1] = fmin(least[1], (double)clock() - planned);
+        spec.algorithm->destroy(plan);
+    }
+    print_message("planned in %.3f s, counted in %.3f s of the processor\n", least[0] / CLOCKS_PER_SEC,
+                  least[1] / CLOCKS_PER_SEC);
     assert_true(work.pairs == pairs_count(&problem) && work.pairs > 0);
-    assert_true(counted - planned > 4 * (planned - begin));
-    spec.algorithm->destroy(plan);
+    assert_true(least[1] > 4 * least[0]);
     spec_free(&spec);
     acquisition_free(&a);
 }
