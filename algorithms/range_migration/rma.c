@@ -135,23 +135,21 @@ static enum status count_work(struct rma *rma)
         const char *format;
         double values[2];
     } notes[] = {
-        {!rma->turns_rows, "azimuth correction: the monostatic phase is exact", {0}},
-        {!rma->converts && !rma->delay, "conversion: one receiver at the transmitter", {0}},
-        {rma->converts && !rma->delay && !differential, "differential preprocessing: one block", {0}},
-        {needed < rma->block_count, "%.0f blocks without rows", {rma->block_count - needed, 0}},
-        {taken < rma->samples, "%.0f %% of each record", {100 * (1 - taken / rma->samples)}},
+        {!rma->turns_rows, "; azimuth correction: the monostatic phase is exact", {0}},
+        {!rma->converts && !rma->delay, "; conversion: one receiver at the transmitter", {0}},
+        {rma->converts && !rma->delay && !differential, "; differential preprocessing: one block", {0}},
+        {needed < rma->block_count, "; %.0f blocks without rows", {rma->block_count - needed, 0}},
+        {taken < rma->samples, "; %.0f %% of each record", {100 * (1 - taken / rma->samples)}},
         {bins < all && !rma->delay,
-         "%.0f %% of the band: %.1g of the pulse's energy",
+         "; %.0f %% of the band: %.1g of the pulse's energy",
          {100 * (1 - bins / all), rma->loss}},
     };
     size_t length = 0;
     for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
-        if (notes[k].happens && length + sizeof "; " < sizeof work->skipped) {
-            length +=
-                (size_t)snprintf(work->skipped + length, sizeof work->skipped - length, "%s", length > 0 ? "; " : "");
-            length += (size_t)snprintf(work->skipped + length, sizeof work->skipped - length, notes[k].format,
-                                       notes[k].values[0], notes[k].values[1]);
-        }
+        if (notes[k].happens && length < sizeof work->skipped)
+            length += (size_t)snprintf(work->skipped + length, sizeof work->skipped - length,
+                                       notes[k].format + (length > 0 ? 0 : sizeof "; " - 1), notes[k].values[0],
+                                       notes[k].values[1]);
     return STATUS_OK;
 }
 

@@ -114,8 +114,7 @@ struct rma_line {
     double lowest;       /* Hz: the least F that is used; below it lies the evanescent part */
     int begin;           /* first bin of the band from there on; `band` if there is none */
     double middle, half; /* Hz: the polynomials' interval */
-    double slowness;     /* s/m: delay over range, (1/2 pi) dK/dF at fc */
-    double offset;       /* cycles/m of range: rma_offset */
+    double slowness;     /* s/m: delay over range, amid the bins: spectrum_slowness */
 };
 
 /* Oversampling of a swath by the transform that the Stolt interpolation reads. */

@@ -39,12 +39,11 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
     double first = rma_frequency(rma, swath, 0), last = rma_frequency(rma, swath, swath->band - 1);
     if (!(line.lowest < s->fc && line.lowest < last))
         return line; /* `printed` takes theta at fc, which must exist */
-    line.offset = rma_offset(rma, line.nu);
     line.begin = (int)fmax(0, ceil((line.lowest - first) / (rma->fs / swath->length)));
     line.middle = (fmax(first, line.lowest) + last) / 2;
     line.half = fmax(last - line.middle, rma->fs / swath->length);
     double f = line.middle / b1, along = c * line.nu / 2 + f * beta, s2 = (f - along) * (f + along);
-    line.slowness = 2 / c * (f - along * beta) / b1 / sqrt(s2);
+    line.slowness = spectrum_slowness(&rma->monostatic, line.middle, line.nu);
     /* Seen by no ping, from no column: its echoes would only fold onto those that are. A pair's wavenumber is that of
        its middle. */
     if (swath->nearest * fabs(along) / sqrt(s2) > rma_focused(rma->problem.acquisition, &rma->bounds, swath->nearest))

@@ -137,12 +137,16 @@ double spectrum_abeam(const struct spectrum_setting *setting, double d, double r
     return bistatic(setting, d, r, setting->fc, 0) / (2 * M_PI * setting->fc);
 }
 
+double spectrum_slowness(const struct spectrum_setting *setting, double frequency, double nu)
+{
+    double c = setting->sound_speed, beta = setting->speed / c, b1 = (1 - beta) * (1 + beta), f = frequency / b1;
+    double along = c * nu / 2 + f * beta;
+    return 2 / c * (f - along * beta) / b1 / root_of((f - along) * (f + along));
+}
+
 double spectrum_walk(const struct spectrum_setting *setting, double nu)
 {
-    double c = setting->sound_speed, beta = setting->speed / c, b1 = (1 - beta) * (1 + beta), f = setting->fc / b1;
-    double along = c * nu / 2 + f * beta, broadside = f * beta;
-    double slope = (f - along * beta) / root_of((f - along) * (f + along));
-    return slope / ((f - broadside * beta) / sqrt((f - broadside) * (f + broadside)));
+    return spectrum_slowness(setting, setting->fc, nu) / spectrum_slowness(setting, setting->fc, 0);
 }
 
 double spectrum_residual(const struct spectrum_setting *setting, double d, double r, double nu)

@@ -51,6 +51,8 @@ double spectrum_residual(const struct spectrum_setting *setting, double d, doubl
 /* Exact for d = 0: the phase is -r times this (rad/m), b = v^2/c^2:
    (4 pi/c) sqrt((F/(1-b))^2 - (c nu/2 + F v/(c (1-b)))^2). NAN where evanescent. */
 double spectrum_monostatic(const struct spectrum_setting *setting, double frequency, double nu);
+/* (1/2 pi) dK/dF, K the factor of -r: delay over range (s/m). NAN where evanescent. */
+double spectrum_slowness(const struct spectrum_setting *setting, double frequency, double nu);
 
 /* The exact delay (s) of a target at range r, the transmitter u metres ahead of it, and its slope over u (s/m). */
 double spectrum_delay(const struct spectrum_setting *setting, double d, double r, double u);

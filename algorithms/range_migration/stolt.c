@@ -178,7 +178,7 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
     }
     FFTW(execute_dft)(patch->focus_plan, (complex_real *)wave, (complex_real *)rows);
     if (rma->turns_rows)
-        turn_rows(&patch->grid, w->line.offset, rows);
+        turn_rows(&patch->grid, rma_offset(rma, w->line.nu), rows);
     memcpy(stored, rows, 2 * (size_t)patch->grid.r_count * sizeof *stored);
     stage_end(w, RMA_FOCUS);
 }

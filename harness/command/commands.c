@@ -119,6 +119,7 @@ const struct named options[] = {
     {'h', "help", NULL, NULL, 0},
     {.name = NULL},
 };
+_Static_assert(sizeof options / sizeof *options <= OPTIONS_MOST + 1, "OPTIONS_MOST is too small");
 
 const char commands_exit[] = "Exit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.";
 

@@ -26,7 +26,8 @@ struct named {
     const char *name, *value, *text;
     size_t offset; /* 0: not stored */
 };
-/* Ends with a NULL name. */
+/* Ends with a NULL name; at most so many. */
+enum { OPTIONS_MOST = 40 };
 extern const struct named options[];
 
 extern const char commands_exit[]; /* what the exit status means */

@@ -22,7 +22,7 @@
 #include "results/provenance.h"
 #include "show/table.h"
 
-enum { THREADS_MOST = 1024, OPTIONS_MOST = 40 };
+enum { THREADS_MOST = 1024 };
 
 /* One screen; each command's help has its options. */
 static void help(void)
@@ -152,7 +152,7 @@ static enum status empty_refuse(const struct command *command, const char *what)
 static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
 {
     struct option known[OPTIONS_MOST + 1] = {{.name = NULL}};
-    for (int k = 0; k < OPTIONS_MOST && options[k].name; k++)
+    for (int k = 0; options[k].name; k++)
         known[k] = (struct option){options[k].name, options[k].value ? required_argument : no_argument, NULL,
                                    options[k].letter};
     enum status status = STATUS_OK;

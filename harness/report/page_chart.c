@@ -33,7 +33,7 @@ void measured_again(const struct measurement *row, char *text, size_t size)
     snprintf(word, sizeof word, "%s/%.500s.cfg", data_path(DATA_SCENES), row->scene);
     const bool shipped = place_is_file(word);
     snprintf(word, sizeof word, "%.500s%s", row->scene, shipped ? "" : ".cfg");
-    snprintf(text, size, "./sasbench run");
+    snprintf(text, size, "%s run", program_called());
     word_append(text, size, word);
     text_append(text, size, " --algorithm");
     measurement_spec(row, word, sizeof word);
