@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "command/task.h"
+#include "text/text_append.h"
 #include "files/folder.h"
 #include "results/merge.h"
 #include "show/plot.h"
@@ -27,7 +28,8 @@ enum status command_merge(const struct task *task)
         if (!place_is_file(text)) /* of `stability` */
             continue;
         status = plot_results(merged[k].directory, NULL, &undrawn);
-        snprintf(text, sizeof text, "Next: %s report %.4000s", program_called(), merged[k].directory);
+        snprintf(text, sizeof text, "Next: %s report ", program_called());
+        text_append_word(text, sizeof text, merged[k].directory);
         if (status == STATUS_OK)
             table_text(stdout, 0, text);
     }

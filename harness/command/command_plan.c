@@ -39,28 +39,11 @@ static enum status nodes_parse(const char *text, int *nodes)
                : status_set(STATUS_INVALID, "plan: --nodes is '%s', must be a whole number from 1 to %d", text, MOST);
 }
 
-/* A word of a shell's command. */
-static void word_append(char *text, size_t size, const char *word)
-{
-    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
-    if (word[strspn(word, plain)] == '\0') {
-        text_append(text, size, "%s", word);
-        return;
-    }
-    text_append(text, size, "'");
-    for (const char *at = word; *at; at++)
-        if (*at == '\'')
-            text_append(text, size, "'\\''");
-        else
-            text_append(text, size, "%c", *at);
-    text_append(text, size, "'");
-}
-
 /* As options of `image`, to be taken from the terminal. Tiles are formed of an echo file. */
 static void source_format(const struct task *task, bool tiled, char *text, size_t size)
 {
     snprintf(text, size, "--%s ", task->echoes || tiled ? "echoes" : "scene");
-    word_append(text, size, task->echoes ? task->echoes : tiled ? TILED_ECHOES : task->names[0]);
+    text_append_word(text, size, task->echoes ? task->echoes : tiled ? TILED_ECHOES : task->names[0]);
     if (task->echoes && task->grid)
         text_append(text, size, " --grid=%s", task->grid);
     if (tiled)

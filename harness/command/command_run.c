@@ -44,8 +44,8 @@ static enum status summary_print(const struct batch *batch, int scene_count, con
         return status;
     snprintf(path, sizeof path, "%s/overview.png", batch->directory);
     const bool drawn = access(path, F_OK) == 0;
-    snprintf(text, sizeof text, "Next: %s%s%s report %s", drawn ? path : "", drawn ? "; " : "", program_called(),
-             batch->directory);
+    snprintf(text, sizeof text, "Next: %s%s%s report ", drawn ? path : "", drawn ? "; " : "", program_called());
+    text_append_word(text, sizeof text, batch->directory);
     if (tables)
         text_append(text, sizeof text, "; %s help columns", program_called());
     table_text(stdout, 0, text);

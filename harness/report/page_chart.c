@@ -1,7 +1,6 @@
 /* Charts of a page as SVG (page_chart.h). */
 #include "report/page_chart.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,29 +14,17 @@
 
 /* --- Commands --------------------------------------------------------------------------------------------------- */
 
-/* Quoted as one word of a shell. */
-static void word_append(char *text, size_t size, const char *word)
-{
-    bool plain = *word && *word != '-';
-    for (const char *at = word; *at; at++)
-        plain &= isalnum((unsigned char)*at) || strchr("_-./:,=+", *at);
-    text_append(text, size, plain ? " " : " '");
-    for (const char *at = word; *at; at++)
-        text_append(text, size, !plain && *at == '\'' ? "'\\''" : "%c", *at);
-    text_append(text, size, plain ? "" : "'");
-}
-
 void measured_again(const struct measurement *row, char *text, size_t size)
 {
     char word[1000];
     snprintf(word, sizeof word, "%s/%.500s.cfg", data_path(DATA_SCENES), row->scene);
     const bool shipped = place_is_file(word);
     snprintf(word, sizeof word, "%.500s%s", row->scene, shipped ? "" : ".cfg");
-    snprintf(text, size, "%s run", program_called());
-    word_append(text, size, word);
-    text_append(text, size, " --algorithm");
+    snprintf(text, size, "%s run ", program_called());
+    text_append_word(text, size, word);
+    text_append(text, size, " --algorithm ");
     measurement_spec(row, word, sizeof word);
-    word_append(text, size, word);
+    text_append_word(text, size, word);
     text_append(text, size, " -o results/again");
 }
 

@@ -22,6 +22,8 @@ sed 's/^/ /' "$prefix/share/sasbench/scenes/study/quick.cfg" >"$prefix/share/sas
 sasbench run study/installed -a bp_nearest >out 2>err || die "run: $(cat out err)"
 grep -q "Next: .*sasbench report results/latest" out || die "run ends with: $(tail -n 1 out)"
 ! grep -q '\./sasbench' out || die "an installed program is not called ./sasbench"
+sasbench run study/installed -a bp_nearest -o "of 'ours" >out 2>&1 && grep -qF "sasbench report 'of '\\''ours'" out ||
+    die "the next command cannot be taken: $(tail -n 1 out)"
 [ -s results/latest/measurements.csv ] && [ -s results/latest/study_installed-bp_nearest.png ] || die "results/latest lacks files"
 sasbench report results/latest >/dev/null && [ -s results/latest/report.html ] || die "no report"
 ! sasbench reproduce --docs >out 2>&1 || die "reproduce --docs has no folder to write into"

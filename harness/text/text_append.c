@@ -12,3 +12,13 @@ void text_append(char *text, size_t size, const char *format, ...)
     vsnprintf(text + used, size - used, format, arguments);
     va_end(arguments);
 }
+
+void text_append_word(char *text, size_t size, const char *word)
+{
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
+    const char *quote = *word && *word != '-' && !word[strspn(word, plain)] ? "" : "'";
+    text_append(text, size, "%s", quote);
+    for (; *word; word++)
+        text_append(text, size, *quote && *word == '\'' ? "'\\''" : "%c", *word);
+    text_append(text, size, "%s", quote);
+}
