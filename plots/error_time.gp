@@ -39,9 +39,10 @@ set yrange [y_low:y_high]
 set xlabel "median run time, raw echoes to image (s)"
 set ylabel "relative L2 error of the complex image"
 set title title.": error against run time"
-if (control_s == control_s) {                          # the same axis as speed-up, above
-    set logscale x2
-    set x2range [control_s/x_low:control_s/x_high]
+scale = control_s == control_s ? control_s : 1
+set logscale x2                                        # the same axis as speed-up, above
+set x2range [scale/x_low:scale/x_high]
+if (control_s == control_s) {
     set x2tics ()                                      # gnuplot finds none by itself on an axis that falls
     do for [decade = -9:9] { set x2tics add (10.0**decade) }
     set format x2 "%gx"
@@ -56,7 +57,7 @@ set label 1 footer at screen 0.5,14.0/height center font ",10" textcolor "#60606
 if (control_s == control_s) { set arrow 1 from control_s,graph 0 to control_s,graph 1 nohead dashtype 3 linewidth 1.5 }
 at_x(share) = x_low*(x_high/x_low)**share
 at_y(share) = y_low*(y_high/y_low)**share
-plot $front using (control_s/$1):2 axes x2y1 with points pointtype 0 notitle, \
+plot $front using (scale/$1):2 axes x2y1 with points pointtype 0 notitle, \
     $front using 1:2 with steps linetype 1 linewidth 5 title "Pareto front", \
     $labels using (at_x($4)):(at_y($5)):(at_x($4 + $6) - at_x($4)):(at_y($5 + $7) - at_y($5)) with vectors nohead \
         linewidth 0.8 dashtype 1 linecolor rgb "#a0a0a0" notitle, \

@@ -200,11 +200,10 @@ static enum status check_usage(const struct task *task)
     if (task->shard && !image_is_tiled(task))
         return status_set(STATUS_INVALID, "image: --shard %s shares tiles; --tile NxM or --memory BYTES is needed",
                           task->shard);
-    if (task->memory && !task->echoes)
-        return status_set(STATUS_INVALID,
-                          "image: --memory %s is for tiles of an echo file, --echoes FILE.mat (a "
-                          "scene's is written by `simulate`)",
-                          task->memory);
+    double bytes;
+    const enum status status = memory_of_tiles("image", task, &bytes);
+    if (status != STATUS_OK)
+        return status;
     return output_is_picture(task->output) ? picture_check("image", task->output) : output_check("image", task->output);
 }
 

@@ -58,8 +58,11 @@ enum status command_run(const struct task *task)
     int scene_count = 0;
     struct batch batch = {0};
     struct shard shard;
+    double memory;
     machine_rates_use(NULL);
     enum status status = shard_parse("run", task->shard, &shard);
+    if (status == STATUS_OK)
+        status = memory_of_tiles("run", task, &memory);
     if (status == STATUS_OK)
         status = check_twice(task);
     if (status == STATUS_OK)
@@ -70,6 +73,8 @@ enum status command_run(const struct task *task)
     if (batch.rows > ROWS_MANY)
         batch.effort = EFFORT_BRIEF;
     batch.works = task->flops;
+    batch.memory = memory;
+    batch.details = !(memory > 0); /* `image --memory` and `show` draw tiled images */
     batch.shard = shard;
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = batch_cells(&batch, &scenes[k], task->spec_count, task->specs);

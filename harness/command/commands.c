@@ -7,9 +7,10 @@
 const struct command commands[] = {
     {"run", "compare algorithms on scenes: error against run time",
      "([SCENE ...] | --echoes FILE.mat [--grid GRID]) [--algorithm SPEC ...] [-o DIR] [--all] [--flops] "
-     "[--shard I/N] [--timeout S]",
-     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLFXU", 0,
-     INT_MAX, command_run, true, .every = true, .example = "run study/quick -a bp_nearest -a rma_delay"},
+     "[--memory BYTES] [--shard I/N] [--timeout S]",
+     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors; with --memory in tiles",
+     "oategLFXUY", 0, INT_MAX, command_run, true, .every = true,
+     .example = "run study/quick -a bp_nearest -a rma_delay"},
     {"report", "make one page of a results folder", "DIR", "make one page of a results folder: DIR/report.html", "", 1,
      1, command_report, .example = "report results/run"},
     {"list", "list the algorithms", "", "list the algorithms, with summary, reference and traits", "", 0, 0,

@@ -74,6 +74,19 @@ enum status memory_parse(const char *command, const char *text, double *bytes)
                             command, text);
 }
 
+enum status memory_of_tiles(const char *command, const struct task *task, double *bytes)
+{
+    *bytes = 0;
+    if (!task->memory)
+        return STATUS_OK;
+    if (!task->echoes)
+        return status_set(STATUS_INVALID,
+                          "%s: --memory %s is for tiles of an echo file, --echoes FILE.mat (a scene's is written by "
+                          "`simulate`)",
+                          command, task->memory);
+    return memory_parse(command, task->memory, bytes);
+}
+
 enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,
                          const struct scene *scene)
 {

@@ -4,7 +4,7 @@
 #define SASBENCH_COMMAND_PLAN_TILES_H
 
 #include "advise/planned.h"
-#include "command/tile_size.h"
+#include "measure/tile_size.h"
 
 /* The tiles of the chosen setting. */
 struct tiled {

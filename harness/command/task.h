@@ -28,6 +28,8 @@ bool output_is_picture(const char *output); /* by its extension; NULL is none */
 enum status range_parse(const char *command, const char *text, double *range_db);
 /* --memory: "4G", "2GB", "512MiB" as bytes. Errors: STATUS_INVALID. */
 enum status memory_parse(const char *command, const char *text, double *bytes);
+/* The same for images in tiles, which need --echoes; 0 without --memory. Errors: STATUS_INVALID. */
+enum status memory_of_tiles(const char *command, const struct task *task, double *bytes);
 /* Draw an image, with the points of a scene (NULL: none) named in it; `named`: the user gave the path. Errors: as
    plot_image. */
 enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,

@@ -6,10 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "choice/choice.h"
 #include "command/task.h"
-#include "command/tile_size.h"
-#include "common/memory.h"
+#include "measure/tile_size.h"
+#include "measure/tiled.h"
 #include "echoes/echo_data.h"
 #include "echoes/mat_tiles.h"
 #include "imaging/imaging.h"
@@ -32,117 +31,6 @@ static enum status tile_parse(const char *text, struct tiles *tiles)
     tiles->columns = columns < tiles->grid.x_count ? (int)columns : tiles->grid.x_count;
     tiles->rows = rows < tiles->grid.r_count ? (int)rows : tiles->grid.r_count;
     return STATUS_OK;
-}
-
-/* Echoes of a scene: in memory, or of a recording those pings that were read. */
-struct held {
-    struct echoes echoes;
-    bool *has, *wanted; /* [pings] */
-    int column;         /* first one of the stretch that they were read for */
-    double largest;     /* of what was read */
-};
-
-static enum status range_check(double largest, enum precision precision)
-{
-    const double reach = precision == PRECISION_DOUBLE ? 0x1p400 : 0x1p40;
-    return !(largest > 0) || (largest >= 1 / reach && largest <= reach)
-               ? STATUS_OK
-               : status_set(STATUS_UNSUPPORTED, "image: --tile: the largest sample is %.3g, must be from %.3g to %.3g",
-                            largest, 1 / reach, reach);
-}
-
-/* Errors: STATUS_UNSUPPORTED where samples do not fit the precision as they are: the whole image would be of samples
-   divided by a power of two. */
-static enum status held_make(const struct scene *scene, enum precision precision, struct held *held)
-{
-    const struct acquisition *a = &scene->acquisition;
-    const size_t pings = (size_t)a->pings;
-    struct echoes from;
-    *held = (struct held){.column = -1};
-    if (!scene->recording.path) {
-        enum status status = scene_echoes(scene, &from);
-        if (status == STATUS_OK)
-            status = echoes_convert(&from, precision, &held->echoes);
-        echoes_free(&from);
-        return status;
-    }
-    const enum status status = range_check(scene->recording.largest, precision);
-    if (status != STATUS_OK)
-        return status;
-    const size_t size = size_product(pings, (size_t)a->receivers, (size_t)a->samples, precision_size(precision));
-    held->has = calloc(pings, sizeof *held->has);
-    held->wanted = calloc(pings, sizeof *held->wanted);
-    held->echoes = (struct echoes){a, precision, size > 0 ? memory_sparse(size) : NULL, 0};
-    return held->has && held->wanted && held->echoes.samples
-               ? STATUS_OK
-               : status_set(STATUS_FAILED, "%s: out of memory for a tile's echoes", scene->recording.path);
-}
-
-static void held_free(struct held *held)
-{
-    if (!held->has)
-        echoes_free(&held->echoes);
-    else
-        memory_sparse_free((void *)held->echoes.samples);
-    free(held->has);
-    free(held->wanted);
-}
-
-/* Read the pings that a plan needs and that are not held; of another stretch, only those that this plan needs are kept.
- */
-static enum status held_read(const struct scene *scene, const struct imaging *imaging, const struct problem *problem,
-                             struct held *held)
-{
-    const struct acquisition *a = &scene->acquisition;
-    const size_t each = (size_t)a->receivers * (size_t)a->samples, bytes = each * precision_size(problem->precision);
-    const struct pings pings = {
-        a->pings,      held->wanted, problem->precision, scene->recording.exponent, each, (void *)held->echoes.samples,
-        &held->largest};
-    imaging_reads(imaging, problem, held->wanted);
-    for (size_t p = 0; p < (size_t)a->pings; p++) {
-        if (held->has[p] && !held->wanted[p] && held->column != problem->window->column) {
-            memory_sparse_drop(pings.samples, p * bytes, (p + 1) * bytes);
-            held->has[p] = false;
-        }
-        held->wanted[p] &= !held->has[p];
-    }
-    held->column = problem->window->column;
-    enum status status = echo_file_read_pings(scene->recording.path, a, &pings);
-    for (size_t p = 0; p < (size_t)a->pings; p++)
-        held->has[p] |= held->wanted[p];
-    if (status == STATUS_OK && held->largest > scene->recording.largest)
-        status = range_check(held->largest, problem->precision);
-    return status;
-}
-
-static enum status tile_form(const struct spec *spec, const struct scene *scene, struct held *held, struct tiles *tiles,
-                             int number)
-{
-    const struct pixel_window window = tiles_window(tiles, number);
-    struct problem problem = problem_make(&scene->acquisition, 1, &tiles->grid, spec->precision);
-    struct imaging imaging;
-    struct image image;
-    struct stages stages;
-    problem.window = &window;
-    enum status status = imaging_open(spec, &problem, &imaging);
-    if (status != STATUS_OK)
-        return status;
-    if (scene->recording.path)
-        status = held_read(scene, &imaging, &problem, held);
-    stages_begin(&stages);
-    if (status == STATUS_OK)
-        status = imaging_execute(&imaging, &held->echoes, &stages);
-    if (status == STATUS_OK)
-        status = imaging_finish(&imaging, &held->echoes, &image);
-    if (status == STATUS_OK) {
-        status = image.precision == tiles->precision
-                     ? tiles_write(tiles, number, image.pixels[0])
-                     : status_set(STATUS_UNSUPPORTED, "image: --tile: float does not hold these echoes' amplitudes; "
-                                                      "precision=double does");
-        image_free(&image);
-    }
-    imaging_close(&imaging);
-    return status;
 }
 
 /* All settings that determine pixels. */
@@ -210,16 +98,21 @@ static enum status tiles_form(const struct task *task, const struct shard *shard
 {
     const struct spec *spec = &task->specs[0];
     const int count = tiles_count(tiles), before = tiles_done(tiles);
-    struct held held = {.has = NULL};
-    enum status status = before < count ? held_make(scene, spec->precision, &held) : STATUS_OK;
+    struct tile_echoes held = {.has = NULL};
+    enum status status = before < count ? tile_echoes_open(scene, spec->precision, &held) : STATUS_OK;
     if (before > 0 && ranks_number() == 0)
         printf("%s: %d of %d tiles were done\n", tiles->path, before, count);
     for (int n = -1; status == STATUS_OK && (n = tile_next(tiles, shard, n)) >= 0;) {
         progress_line(false, "%s: tile %d of %d by %s", scene->name, n + 1, count, spec->algorithm->name);
-        status = tile_form(spec, scene, &held, tiles, n);
+        struct tile tile;
+        status = tile_form(spec, scene, &held, tiles, n, &tile);
+        if (status == STATUS_OK) {
+            status = tiles_write(tiles, n, tile.image.pixels[0]);
+            tile_free(&tile);
+        }
     }
     progress_line_clear();
-    held_free(&held);
+    tile_echoes_close(&held);
     return status;
 }
 
@@ -275,7 +168,7 @@ static enum status memory_take(const struct task *task, const struct scene *scen
 {
     double bytes;
     struct tile_cost cost;
-    enum status status = memory_parse("image", task->memory, &bytes);
+    enum status status = memory_of_tiles("image", task, &bytes);
     if (status != STATUS_OK)
         return status;
     progress_line(false, "%s: tiles for %s", scene->name, task->memory);
@@ -297,18 +190,12 @@ enum status image_tiles(const struct task *task, const struct scene *scene, cons
 {
     const struct spec *spec = &task->specs[0];
     struct tiles tiles = {.path = task->output, .grid = scene->patches[0], .precision = spec->precision};
-    struct budget budget;
     char settings[1400];
-    if (choice_asked(spec, &budget) || !(spec->algorithm->traits & TRAIT_WINDOW) || scene->patch_count != 1)
-        return status_set(
-            STATUS_UNSUPPORTED,
-            "image: --tile takes an image of one patch, by any algorithm but auto, wk_polar (whose filter "
-            "needs the whole track: `filter` writes filtered echoes for the others), plug-ins, programs "
-            "and chains of filters; %s of %d patches is asked for",
-            spec->algorithm->name, scene->patch_count);
     struct shard shard;
     bool sealed = false;
-    enum status status = shard_parse("image", task->shard, &shard);
+    enum status status = tiled_check("image", spec, scene);
+    if (status == STATUS_OK)
+        status = shard_parse("image", task->shard, &shard);
     if (status == STATUS_OK)
         status = task->tile ? tile_parse(task->tile, &tiles) : memory_take(task, scene, &tiles);
     if (status == STATUS_OK)

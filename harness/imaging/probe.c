@@ -116,10 +116,10 @@ static void places_choose(const struct segment *list, size_t count, struct probe
 {
     struct random random = random_seed(1, 0);
     probe->count = count <= COUNT ? (int)count : COUNT;
-    probe->bright = count <= COUNT ? (int)count : BRIGHT;
-    for (int k = 0; k < probe->bright; k++)
+    const int bright = count <= COUNT ? (int)count : BRIGHT;
+    for (int k = 0; k < bright; k++)
         probe->places[k] = list[k].place;
-    for (int k = probe->bright; k < probe->count; k++) {
+    for (int k = bright; k < probe->count; k++) {
         const double low = rank_at(k - BRIGHT, (double)count), high = rank_at(k - BRIGHT + 1, (double)count);
         const size_t at = (size_t)(low + random_uniform(&random) * (high - low));
         probe->places[k] = list[at < count ? at : count - 1].place;
@@ -204,6 +204,31 @@ enum status probe_make(const struct spec *exact, const struct problem *problem, 
     return status;
 }
 
+enum status probe_join(struct probe *all, struct probe *part, const struct pixel_window *window)
+{
+    const size_t had = (size_t)all->count, more = (size_t)part->count, count = had + more;
+    struct probe_place *places = realloc(all->places, count * sizeof *places);
+    all->places = places ? places : all->places;
+    struct grid *grids = realloc(all->grids, count * sizeof *grids);
+    all->exact.patches = all->grids = grids ? grids : all->grids;
+    void **pixels = realloc(all->exact.pixels, count * sizeof *pixels);
+    all->exact.pixels = pixels ? pixels : all->exact.pixels;
+    if (!places || !grids || !pixels)
+        return status_set(STATUS_FAILED, "no memory for the pixels that an error is measured on");
+    for (size_t k = 0; k < more; k++) {
+        places[had + k] = part->places[k];
+        places[had + k].row += window->row;
+        places[had + k].column += window->column;
+        grids[had + k] = part->grids[k];
+        pixels[had + k] = part->exact.pixels[k];
+    }
+    all->count = all->exact.patch_count = (int)count;
+    all->exact.precision = part->exact.precision;
+    part->exact.patch_count = 0; /* its pixels are the joined probe's */
+    probe_free(part);
+    return STATUS_OK;
+}
+
 void probe_free(struct probe *probe)
 {
     image_free(&probe->exact);
@@ -276,12 +301,14 @@ static double deviation(const struct compared *c, double complex gain, const str
 {
     const struct probe *probe = c->probe;
     const double ratio = sum->error / sum->exact;
-    double last = 0, variance = 0;
-    for (int k = probe->bright; k < probe->count; k++) {
+    double last = NAN, variance = 0;
+    for (int k = 0; k < probe->count; k++) {
         const double all = probe->places[k].stands_for;
+        if (all <= 1) /* one of the brightest, which stands for itself */
+            continue;
         const struct energies one = segment_energies(c, k, gain);
-        const double residue = sqrt(fmax(all * (all - 1), 0)) * (one.error - ratio * one.exact);
-        if (k > probe->bright)
+        const double residue = sqrt(all * (all - 1)) * (one.error - ratio * one.exact);
+        if (!isnan(last))
             variance += (residue - last) * (residue - last) / 2;
         last = residue;
     }

@@ -19,10 +19,10 @@ struct probe_place {
 struct probe {
     bool whole; /* an image of few pixels is taken whole: its patches are the grids */
     int count;  /* segments */
-    int bright; /* of them: the brightest, which stand for themselves; the others follow in order of brightness */
-    struct probe_place *places; /* [count]; NULL for the whole image */
-    struct grid *grids;         /* [count], one row each but for the whole image */
-    struct image exact;         /* of `grids` */
+    /* [count]: the brightest, which stand for themselves, and others in order of brightness; NULL for the whole image */
+    struct probe_place *places;
+    struct grid *grids; /* [count], one row each but for the whole image */
+    struct image exact; /* of `grids` */
 };
 
 /* Where errors count. */
@@ -39,6 +39,9 @@ enum status probe_make(const struct spec *exact, const struct problem *problem, 
 /* Form the exact image of the same segments again, by another SPEC. Errors: as imaging_form; *probe stays as it was. */
 enum status probe_exact(const struct spec *exact, const struct problem *problem, const struct echoes *echoes,
                         struct probe *probe);
+/* Add the probe of a window's image, of no whole one, to one of the whole image, zeroed at first; `part` is empty then.
+   Errors: STATUS_FAILED without memory; both are still to be freed. */
+enum status probe_join(struct probe *all, struct probe *part, const struct pixel_window *window);
 void probe_free(struct probe *probe);
 /* The problem of the segments alone, which points into the probe. */
 struct problem probe_problem(const struct probe *probe, const struct problem *problem);

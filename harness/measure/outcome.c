@@ -12,6 +12,7 @@
 #include "echoes/echo_data.h"
 #include "measure/darkness.h"
 #include "imaging/imaging.h"
+#include "measure/tiled.h"
 #include "metrics/metrics.h"
 #include "text/text_append.h"
 
@@ -56,6 +57,25 @@ static void __attribute__((format(printf, 3, 4))) reason_add(char *reason, size_
     va_end(arguments);
 }
 
+/* An image in tiles has its errors already. */
+static void errors_fill(const struct session *session, struct outcome *outcome)
+{
+    struct measurement *row = &outcome->row;
+    if (session->memory > 0)
+        return;
+    const struct error_metrics error = metrics_error(&outcome->image, &session->reference);
+    row->error = error.error;
+    row->error_gain = error.error_gain;
+    row->phase_rms_rad = error.phase_rms_rad;
+    if (*session->no_reference)
+        reason_add(outcome->reason, sizeof outcome->reason,
+                   OUTCOME_WARNING "no errors, for there is no exact image: %s", session->no_reference);
+    else if (*error.reason)
+        reason_add(outcome->reason, sizeof outcome->reason, OUTCOME_WARNING "%s", error.reason);
+    if (session->flown.patch_count > 0)
+        row->error_flown = metrics_error(&outcome->image, &session->flown).error_gain;
+}
+
 /* Fill the row with the errors of the image and the medians over the targets, and the targets' rows. */
 static enum status quality_fill(const struct session *session, struct outcome *outcome)
 {
@@ -69,17 +89,7 @@ static enum status quality_fill(const struct session *session, struct outcome *o
         free(values);
         return status_set(STATUS_FAILED, "%s: no memory for %d targets", session->scene->name, points);
     }
-    struct error_metrics error = metrics_error(&outcome->image, &session->reference);
-    row->error = error.error;
-    row->error_gain = error.error_gain;
-    row->phase_rms_rad = error.phase_rms_rad;
-    if (*session->no_reference)
-        reason_add(reason, reason_size, OUTCOME_WARNING "no errors, for there is no exact image: %s",
-                   session->no_reference);
-    else if (*error.reason)
-        reason_add(reason, reason_size, OUTCOME_WARNING "%s", error.reason);
-    if (session->flown.patch_count > 0)
-        row->error_flown = metrics_error(&outcome->image, &session->flown).error_gain;
+    errors_fill(session, outcome);
     if (points == 0)
         reason_add(reason, reason_size, OUTCOME_NO_TARGETS);
     double *width = values, *pslr = values + points, *islr = values + 2 * points;
@@ -156,27 +166,48 @@ static void noise_tell(const struct timing *timing, char *text, size_t size)
     snprintf(text, size, "%s%s%s", *why ? OUTCOME_NOISE : "", *why ? ": " : "", why);
 }
 
+static void times_fill(const struct timing *timing, struct session *session, struct outcome *outcome)
+{
+    struct measurement *row = &outcome->row;
+    outcome->work = timing->work;
+    session->spent.planning += timing->plan_s;
+    session->spent.imaging += timing->spent_s;
+    row->plan_s = timing->plan_s;
+    row->run_s = timing->run_s;
+    row->run_min_s = timing->run_min_s;
+    row->run_q1_s = timing->run_q1_s;
+    row->run_q3_s = timing->run_q3_s;
+    row->runs = timing->runs;
+    row->control_s = timing->control_s;
+    stages_format(&timing->stages, outcome->stages, sizeof outcome->stages);
+    noise_tell(timing, outcome->noise, sizeof outcome->noise);
+}
+
+static enum status image_tiled(struct session *session, const struct spec *spec, struct outcome *outcome)
+{
+    struct tiled tiled;
+    const enum status status = tiled_measure(spec, session->scene, session->memory, &tiled);
+    if (status != STATUS_OK)
+        return status;
+    const struct probe_error *e = &tiled.error;
+    outcome->image = tiled.image;
+    outcome->row.error = e->error;
+    outcome->row.error_gain = e->error_gain;
+    times_fill(&tiled.timing, session, outcome);
+    reason_add(outcome->reason, sizeof outcome->reason,
+               "--tile %dx%d, %d in all; errors are of %d pixels, +gain from %.2g to %.2g at 95 %%",
+               tiled.tiles.columns, tiled.tiles.rows, tiles_count(&tiled.tiles), e->pixels, e->low, e->high);
+    return STATUS_OK;
+}
+
 static enum status image_time(struct session *session, const struct spec *spec, const struct problem *problem,
                               enum effort effort, struct timing_samples *samples, struct outcome *outcome)
 {
     struct timing timing;
-    struct measurement *row = &outcome->row;
-    enum status status = timing_measure(spec, problem, &session->echoes[spec->precision], &session->control, effort,
-                                        samples, &outcome->image, &timing);
-    if (status == STATUS_OK) {
-        outcome->work = timing.work;
-        session->spent.planning += timing.plan_s;
-        session->spent.imaging += timing.spent_s;
-        row->plan_s = timing.plan_s;
-        row->run_s = timing.run_s;
-        row->run_min_s = timing.run_min_s;
-        row->run_q1_s = timing.run_q1_s;
-        row->run_q3_s = timing.run_q3_s;
-        row->runs = timing.runs;
-        row->control_s = timing.control_s;
-        stages_format(&timing.stages, outcome->stages, sizeof outcome->stages);
-        noise_tell(&timing, outcome->noise, sizeof outcome->noise);
-    }
+    const enum status status = timing_measure(spec, problem, &session->echoes[spec->precision], &session->control,
+                                              effort, samples, &outcome->image, &timing);
+    if (status == STATUS_OK)
+        times_fill(&timing, session, outcome);
     return status;
 }
 
@@ -307,15 +338,20 @@ void outcome_measure(struct session *session, const struct spec *asked, enum eff
 {
     const struct spec *spec = asked;
     outcome_begin(session, spec->algorithm->name, spec->text, spec->precision, outcome);
-    enum status status = session_resolve(session, spec, &spec);
+    enum status status =
+        session->memory > 0 ? tiled_check("run", spec, session->scene) : session_resolve(session, spec, &spec);
     if (status != STATUS_OK) {
         outcome_fail(outcome, status);
         return;
     }
     struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
     const struct echoes *echoes = &session->echoes[spec->precision];
-    status = effort != EFFORT_NONE ? image_time(session, spec, &problem, effort, samples, outcome)
-                                   : imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
+    if (session->memory > 0)
+        status = image_tiled(session, spec, outcome);
+    else if (effort != EFFORT_NONE)
+        status = image_time(session, spec, &problem, effort, samples, outcome);
+    else
+        status = imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
     if (status == STATUS_OK) {
         work_fill(session, &problem, outcome);
         if (asked != spec)

@@ -45,7 +45,7 @@ static void choose(const struct session *session, const struct spec *spec, const
 const struct chosen *session_chosen(struct session *session, const struct spec *spec)
 {
     struct budget budget;
-    if (!choice_asked(spec, &budget))
+    if (session->memory > 0 || !choice_asked(spec, &budget)) /* tiled_check refuses choices */
         return NULL;
     budget.region = (struct region){session->scene->reference_count, session->scene->reference_patches};
     for (int k = 0; k < session->chosen_count; k++)
@@ -139,6 +139,12 @@ enum status session_open(const struct scene *scene, struct session *session)
     if (status != STATUS_OK)
         session_close(session);
     return status;
+}
+
+void session_open_tiled(const struct scene *scene, double memory, struct session *session)
+{
+    *session = (struct session){.scene = scene, .memory = memory};
+    session->condition_count = scene_conditions(scene, session->conditions);
 }
 
 void session_close(struct session *session)

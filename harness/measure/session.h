@@ -27,6 +27,7 @@ struct chosen {
 /* Made by session_open, released by session_close. */
 struct session {
     const struct scene *scene; /* borrowed, outlives the session */
+    double memory; /* bytes; above 0: images are formed tile by tile, and there are no echoes and no `reference` */
     struct echoes echoes[2]; /* by enum precision; extreme echoes are divided by one power of two, and images keep it */
     struct image reference;  /* double, on the patches where images are compared; without patches where there is none */
     struct image flown;      /* the same by the true track; without patches where the stated track is the true one */
@@ -44,6 +45,8 @@ struct session {
    errors. Errors: STATUS_FAILED for memory or the simulation, STATUS_INVALID as scene_simulate; *session then needs
    no close. */
 enum status session_open(const struct scene *scene, struct session *session);
+/* Of a recording whose echoes stay in their file. Errors are then measured on some pixels of each tile. */
+void session_open_tiled(const struct scene *scene, double memory, struct session *session);
 void session_close(struct session *session);
 /* Add the session's times to `sum`. */
 void session_spent(const struct session *session, struct spent *sum);
@@ -52,8 +55,8 @@ void session_spent(const struct session *session, struct spent *sum);
    pixels that are compared. Points into the scene. */
 struct problem session_problem(const struct scene *scene, const struct algorithm *algorithm, enum precision precision);
 
-/* The choice for a SPEC, made once. NULL where the SPEC names its algorithm, or, with a message, without memory. The
-   next choice moves it. */
+/* The choice for a SPEC, made once. NULL where the SPEC names its algorithm, in tiles, or, with a message, without
+   memory. The next choice moves it. */
 const struct chosen *session_chosen(struct session *session, const struct spec *spec);
 /* The SPEC itself, or the one chosen for it. Errors: STATUS_UNSUPPORTED where no setting meets the budget, as
    choice_make. */

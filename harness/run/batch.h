@@ -19,6 +19,7 @@ struct batch {
     bool details;       /* for every scene: draw images and slices */
     bool works;         /* for every scene: print FLOPs by formula */
     enum effort effort; /* of times; EFFORT_WHOLE from batch_open on */
+    double memory;      /* bytes; above 0: images are formed tile by tile, of echoes that stay in their file */
     bool in_turn;       /* time settings by rounds, so that a disturbed minute does not hit one setting alone */
     bool failed;        /* a measurement failed */
     int undrawn;        /* pictures that could not be drawn */

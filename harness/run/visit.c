@@ -39,8 +39,13 @@ enum status visit_open(struct batch *batch, const struct scene *scene, int spec_
 {
     *visit = (struct visit){.specs = specs, .spec_count = spec_count};
     const char *crash = task_begin(scene, NULL);
-    enum status status = crash ? status_set(STATUS_FAILED, "making the echoes and the exact image %s", crash)
-                               : session_open(scene, &visit->session);
+    enum status status = STATUS_OK;
+    if (crash)
+        status = status_set(STATUS_FAILED, "making the echoes and the exact image %s", crash);
+    else if (batch->memory > 0)
+        session_open_tiled(scene, batch->memory, &visit->session);
+    else
+        status = session_open(scene, &visit->session);
     supervisor_leave();
     if (status != STATUS_OK)
         return status;

@@ -30,8 +30,13 @@ static void report(void *to)
 /* A line of numbers of a data block. */
 static void line_write(FILE *file, int count, const double *numbers)
 {
-    for (int k = 0; k < count; k++)
-        fprintf(file, isfinite(numbers[k]) ? "%.9g%c" : "NaN%.0g%c", numbers[k], k < count - 1 ? ' ' : '\n');
+    for (int k = 0; k < count; k++) {
+        const char *end = k < count - 1 ? " " : "\n";
+        if (isfinite(numbers[k]))
+            fprintf(file, "%.9g%s", numbers[k], end);
+        else
+            fprintf(file, "NaN%s", end); /* gnuplot knows no other spelling, in which printf differs */
+    }
 }
 
 /* $rows: a block for each series of run_s error low high rate islr; and a description of each series. */
@@ -300,13 +305,13 @@ static enum status overview_write(FILE *file, const void *of)
     return STATUS_OK;
 }
 
-/* The overview of scenes with points. */
+/* The overview of scenes with points, whose times are in that of the scalar reference loop. */
 static enum status overview_draw(struct drawer *drawer, const struct results *results, struct points *scenes, int count)
 {
     struct overview overview = {.scenes = scenes, .names = calloc((size_t)results->csv.row_count + 1, sizeof(char *))};
     for (int s = 0; s < count; s++)
-        if (scenes[s].count > 0) {
-            const struct points points = scenes[s]; /* scenes without points go last */
+        if (scenes[s].count > 0 && scenes[s].control_s > 0) {
+            const struct points points = scenes[s]; /* the others go last */
             scenes[s] = scenes[overview.count];
             scenes[overview.count++] = points;
         }

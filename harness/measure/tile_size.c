@@ -1,5 +1,5 @@
 /* The tile for a memory (tile_size.h). */
-#include "command/tile_size.h"
+#include "measure/tile_size.h"
 
 #include <math.h>
 #include <stdlib.h>

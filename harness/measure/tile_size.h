@@ -1,6 +1,6 @@
 /* The tile of an image that a process of a given memory forms, by what its plan holds. */
-#ifndef SASBENCH_COMMAND_TILE_SIZE_H
-#define SASBENCH_COMMAND_TILE_SIZE_H
+#ifndef SASBENCH_MEASURE_TILE_SIZE_H
+#define SASBENCH_MEASURE_TILE_SIZE_H
 
 #include "echoes/mat_tiles.h"
 #include "imaging/spec.h"
