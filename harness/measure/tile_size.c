@@ -16,23 +16,13 @@ static int parts_of(int whole, int part)
     return (whole + part - 1) / part;
 }
 
-/* The farthest tile of the stretch of columns that is next to the middle of the track. */
 struct pixel_window tile_dearest(const struct acquisition *a, const struct tiles *tiles)
 {
-    const int deep = parts_of(tiles->grid.r_count, tiles->rows);
+    const struct grid *g = &tiles->grid;
     const struct vector middle = a->tx[a->pings / 2];
-    double least = INFINITY;
-    int nearest = 0;
-    for (int n = 0; n < tiles_count(tiles); n += deep) {
-        const struct pixel_window w = tiles_window(tiles, n);
-        const struct vector p = grid_point(&tiles->grid, w.row, w.column + w.columns / 2);
-        const double distance = hypot(p.x - middle.x, p.y - middle.y);
-        if (distance < least) {
-            least = distance;
-            nearest = n;
-        }
-    }
-    return tiles_window(tiles, nearest);
+    const double column = (grid_coordinates(g, middle.x, middle.y).x - g->x_first) / g->x_step - tiles->columns / 2.0;
+    return (struct pixel_window){g->r_count - tiles->rows, tiles->rows,
+                                 (int)fmax(fmin(column, g->x_count - tiles->columns), 0), tiles->columns};
 }
 
 enum status tile_cost(const struct spec *spec, const struct scene *scene, const struct tiles *tiles,

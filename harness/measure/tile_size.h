@@ -6,7 +6,8 @@
 #include "imaging/spec.h"
 #include "scene/scene.h"
 
-/* Of the dearest tile: the farthest one beside the middle of the track. */
+/* Of the dearest tile: a whole one, the farthest, as near to the middle of the track as the image has pixels. Tiles at
+   the image's end may be smaller. */
 struct tile_cost {
     double bytes; /* of the process with one thread */
     double flops; /* of the tile */

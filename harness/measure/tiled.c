@@ -138,11 +138,13 @@ static enum status tile_probe(const struct spec *exact, const struct scene *scen
 {
     const struct problem part = problem_make(&scene->acquisition, 1, &tile->imaging.part, exact->precision);
     const struct region everywhere = {1, &tile->imaging.part};
+    struct problem read = tile->problem;
     struct imaging imaging;
     struct probe probe;
-    enum status status = imaging_open(exact, &tile->problem, &imaging);
+    read.estimate = true;
+    enum status status = imaging_open(exact, &read, &imaging);
     if (status == STATUS_OK) {
-        status = pings_read(scene, &imaging, &tile->problem, held);
+        status = pings_read(scene, &imaging, &read, held);
         imaging_close(&imaging);
     }
     if (status == STATUS_OK)

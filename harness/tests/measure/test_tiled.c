@@ -98,6 +98,22 @@ static void image_of_tiles(void **state)
     }
 }
 
+/* A tile's cost is that of a whole one, where a narrow one is left at the end of the image, nearest to the track's
+   middle. */
+static void cost_of_whole_tiles(void **state)
+{
+    (void)state;
+    struct tiles tiles = {.grid = *part.patches, .precision = PRECISION_FLOAT};
+    tiles.grid.x_first = -10;
+    tiles.columns = tiles.grid.x_count - 1;
+    tiles.rows = tiles.grid.r_count - 1;
+    const struct pixel_window w = tile_dearest(&part.acquisition, &tiles);
+    assert_int_equal(w.columns, tiles.columns);
+    assert_int_equal(w.rows, tiles.rows);
+    assert_int_equal(w.column, 1);
+    assert_int_equal(w.row, 1);
+}
+
 static void assert_refused(const char *text, double memory, const char *why)
 {
     struct session tiled;
@@ -125,6 +141,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(image_of_tiles),
+        cmocka_unit_test(cost_of_whole_tiles),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, recording_make, recording_remove);
