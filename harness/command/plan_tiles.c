@@ -111,16 +111,19 @@ enum status plan_make(const struct scene *scene, const struct budget *budget, st
 
 /* ---- in words ---- */
 
-static double ping_bytes(const struct acquisition *a, enum precision precision)
+/* Of the echo file, or of the one that `simulate` would write. */
+static double ping_bytes(const struct scene *scene)
 {
-    return (double)a->receivers * a->samples * (double)precision_size(precision);
+    const struct acquisition *a = &scene->acquisition;
+    return scene->recording.path ? scene->recording.bytes / scene->recording.pings
+                                 : (double)a->receivers * a->samples * (double)precision_size(PRECISION_DOUBLE);
 }
 
 void tiles_print(const struct scene *scene, const struct tiled *tiled)
 {
     const struct tiles *tiles = &tiled->tiles;
     const struct acquisition *a = &scene->acquisition;
-    const double ping = ping_bytes(a, tiles->precision), pings = (double)tiled->cost.pings * tiles_count(tiles);
+    const double ping = ping_bytes(scene), pings = (double)tiled->cost.pings * tiles_count(tiles);
     char text[300];
     snprintf(text, sizeof text,
              "In %d tiles of %d x %d pixels (along x, r). Each reads up to %d of %d pings, all of them %s, %.2g times "
@@ -153,7 +156,7 @@ static enum status node_line(int nodes, const struct spec *spec, const struct sc
     const int count = tiles_count(&tiles), each = (count + nodes - 1) / nodes;
     const double seconds = each * cost.flops * tiled->flop_s, pings = (double)count * cost.pings;
     const double size = (double)precision_size(spec->precision), pixels = (double)g->x_count * g->r_count;
-    const double bytes = pings * ping_bytes(a, spec->precision) + pixels * size;
+    const double bytes = pings * ping_bytes(scene) + pixels * size;
     char tile[32];
     *alone = nodes == 1 ? seconds : *alone;
     snprintf(tile, sizeof tile, "%dx%d", tiles.columns, tiles.rows);

@@ -185,7 +185,7 @@ static void times_fill(const struct timing *timing, struct session *session, str
 
 static enum status image_tiled(struct session *session, const struct spec *spec, struct outcome *outcome)
 {
-    struct tiled tiled;
+    struct tiled_image tiled;
     const enum status status = tiled_measure(spec, session->scene, session->memory, &tiled);
     if (status != STATUS_OK)
         return status;

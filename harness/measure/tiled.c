@@ -190,7 +190,7 @@ static void times_add(const struct tile *tile, struct timing *timing)
 }
 
 static enum status tiles_measure(const struct spec *spec, const struct spec *exact, const struct scene *scene,
-                                 struct tiled *tiled)
+                                 struct tiled_image *tiled)
 {
     struct tile_echoes held;
     struct probe probe = {.count = 0};
@@ -212,14 +212,15 @@ static enum status tiles_measure(const struct spec *spec, const struct spec *exa
     return status;
 }
 
-enum status tiled_measure(const struct spec *spec, const struct scene *scene, double memory, struct tiled *tiled)
+enum status tiled_measure(const struct spec *spec, const struct scene *scene, double memory, struct tiled_image *tiled)
 {
     const struct grid *grid = &scene->patches[0];
     const double whole = (double)grid->r_count * grid->x_count * (double)precision_size(spec->precision);
     struct spec exact;
     struct tile_cost cost;
-    *tiled = (struct tiled){.tiles = {.grid = *grid, .precision = spec->precision},
-                            .timing = {.runs = 1, .run_q1_s = NAN, .run_q3_s = NAN, .waited = NAN, .control_s = NAN}};
+    *tiled =
+        (struct tiled_image){.tiles = {.grid = *grid, .precision = spec->precision},
+                             .timing = {.runs = 1, .run_q1_s = NAN, .run_q3_s = NAN, .waited = NAN, .control_s = NAN}};
     enum status status = tiled_check("run", spec, scene);
     if (status == STATUS_OK && !(memory > whole))
         status = status_set(STATUS_UNSUPPORTED,

@@ -40,13 +40,13 @@ void tile_free(struct tile *tile);
 
 /* A whole image of a recording, its tiles chosen for `memory` bytes beside the image. Times, work and stages are sums
    over the tiles, of one run each; without a control. */
-struct tiled {
+struct tiled_image {
     struct image image; /* of the scene's patch, freed by the caller */
     struct timing timing;
     struct probe_error error; /* against `reference` in the image's precision, on some pixels of each tile */
     struct tiles tiles;       /* their size */
 };
 /* Errors: as tile_choose and tile_form; nothing to free then. */
-enum status tiled_measure(const struct spec *spec, const struct scene *scene, double memory, struct tiled *tiled);
+enum status tiled_measure(const struct spec *spec, const struct scene *scene, double memory, struct tiled_image *tiled);
 
 #endif

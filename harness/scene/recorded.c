@@ -126,6 +126,7 @@ static enum status recording_open(const char *path, struct scene *scene)
     free(read);
     if (status != STATUS_OK)
         return status;
+    recording->bytes = (double)file.st_size;
     const long long told[] = {file.st_size, file.st_mtim.tv_sec, file.st_mtim.tv_nsec};
     hash_add(&scene->hash, told, sizeof told);
     return status;

@@ -32,6 +32,7 @@ struct recording_file {
     int first;
     int exponent;   /* of the power of two that they are divided by */
     double largest; /* magnitude of a part, of some pings */
+    double bytes;   /* of the file, nearly all of them samples */
 };
 
 /* Freed with scene_free. */

@@ -73,7 +73,7 @@ static void image_of_tiles(void **state)
         struct spec spec;
         struct image image;
         struct work work;
-        struct tiled tiled;
+        struct tiled_image tiled;
         assert_int_equal(spec_parse(cases[k].spec, &spec), STATUS_OK);
         const struct problem problem = scene_problem(&whole, spec.precision);
         assert_int_equal(imaging_form(&spec, &problem, &session.echoes[spec.precision], &image, &work), STATUS_OK);
