@@ -19,7 +19,7 @@ struct probe_place {
 struct probe {
     bool whole; /* an image of few pixels is taken whole: its patches are the grids */
     int count;  /* segments */
-    /* [count]: the brightest, which stand for themselves, and others in order of brightness; NULL for the whole image */
+    /* [count]: the brightest, which stand for themselves, then others in order of brightness; NULL: the whole image */
     struct probe_place *places;
     struct grid *grids; /* [count], one row each but for the whole image */
     struct image exact; /* of `grids` */
