@@ -58,7 +58,7 @@ enum status command_run(const struct task *task)
     int scene_count = 0;
     struct batch batch = {0};
     struct shard shard;
-    double memory;
+    double memory = 0;
     machine_rates_use(NULL);
     enum status status = shard_parse("run", task->shard, &shard);
     if (status == STATUS_OK)
