@@ -6,6 +6,8 @@
 double clock_monotonic(void);
 
 struct stages;
+/* Add seconds to a stage by its name; to the last one where there is no room for another. */
+void stages_add(struct stages *stages, const char *name, double seconds);
 /* The threads' time in each stage, as shares of the time that passed. */
 void stages_share(struct stages *stages, int count, const char *const *names, const double *seconds);
 

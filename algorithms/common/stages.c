@@ -29,11 +29,9 @@ void stages_begin(struct stages *stages)
     *stages = (struct stages){.mark = seconds_now()};
 }
 
-void stages_end(struct stages *stages, const char *name)
+void stages_add(struct stages *stages, const char *name, double seconds)
 {
-    double now = seconds_now(), seconds = now - stages->mark;
     int last = (int)(sizeof stages->stage / sizeof stages->stage[0]) - 1, i = 0;
-    stages->mark = now;
     while (i < stages->count && strcmp(stages->stage[i].name, name) != 0)
         i++;
     if (i > last)
@@ -41,6 +39,13 @@ void stages_end(struct stages *stages, const char *name)
     else if (i == stages->count)
         stages->stage[stages->count++].name = name;
     stages->stage[i].seconds += seconds;
+}
+
+void stages_end(struct stages *stages, const char *name)
+{
+    const double now = seconds_now(), seconds = now - stages->mark;
+    stages->mark = now;
+    stages_add(stages, name, seconds);
 }
 
 void stages_share(struct stages *stages, int count, const char *const *names, const double *seconds)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "choice/choice.h"
+#include "common/clock.h"
 #include "common/memory.h"
 #include "echoes/echo_data.h"
 #include "measure/tile_size.h"
@@ -179,14 +180,8 @@ static void times_add(const struct tile *tile, struct timing *timing)
     *sum->skipped = '\0';
     timing->plan_s += tile->imaging.plan_s;
     timing->run_s += tile->run_s;
-    for (int k = 0; k < tile->stages.count; k++) {
-        int same = 0;
-        while (same < timing->stages.count && strcmp(timing->stages.stage[same].name, tile->stages.stage[k].name) != 0)
-            same++;
-        timing->stages.count += same == timing->stages.count;
-        timing->stages.stage[same].name = tile->stages.stage[k].name;
-        timing->stages.stage[same].seconds += tile->stages.stage[k].seconds;
-    }
+    for (int k = 0; k < tile->stages.count; k++)
+        stages_add(&timing->stages, tile->stages.stage[k].name, tile->stages.stage[k].seconds);
 }
 
 static enum status tiles_measure(const struct spec *spec, const struct spec *exact, const struct scene *scene,
