@@ -194,9 +194,14 @@ static enum status image_tiled(struct session *session, const struct spec *spec,
     outcome->row.error = e->error;
     outcome->row.error_gain = e->error_gain;
     times_fill(&tiled.timing, session, outcome);
-    reason_add(outcome->reason, sizeof outcome->reason,
-               "--tile %dx%d, %d in all; errors are of %d pixels, +gain from %.2g to %.2g at 95 %%",
-               tiled.tiles.columns, tiled.tiles.rows, tiles_count(&tiled.tiles), e->pixels, e->low, e->high);
+    reason_add(outcome->reason, sizeof outcome->reason, "--tile %dx%d, %d in all", tiled.tiles.columns,
+               tiled.tiles.rows, tiles_count(&tiled.tiles));
+    if (isnan(e->error_gain))
+        reason_add(outcome->reason, sizeof outcome->reason,
+                   OUTCOME_WARNING "no relative error: the exact image is zero on %d pixels", e->pixels);
+    else
+        reason_add(outcome->reason, sizeof outcome->reason, "errors are of %d pixels, +gain from %.2g to %.2g at 95 %%",
+                   e->pixels, e->low, e->high);
     return STATUS_OK;
 }
 
