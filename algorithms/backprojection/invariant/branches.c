@@ -11,7 +11,8 @@ struct run {
     const real *x, *y;       /* the sample's first branch of ping `shift` */
     const real *u, *wr, *wi; /* [count] */
     int count, begin, end;   /* columns [begin, end) have pings, begin in whole vectors */
-    real *re, *im;           /* of the first residue */
+    real *re, *im;           /* of the first residue, from column `stored` on */
+    int stored;
 };
 
 /* Columns of `width` vectors from j on. */
@@ -25,7 +26,7 @@ INLINE void add_vectors(int branches, int width, const struct run *run, int bran
             x[m * width + k] = v;
             y[m * width + k] = w;
         }
-    real *re = run->re + j, *im = run->im + j;
+    real *re = run->re + (j - run->stored), *im = run->im + (j - run->stored);
     for (int p = 0; p < run->count; p++, re += stride, im += stride) {
         const real u = run->u[p], cosine = run->wr[p], sine = run->wi[p];
         for (int k = 0; k < width; k++) {
@@ -58,7 +59,9 @@ INLINE void sum_block(int branches, const struct chunk *chunk, const struct bp_r
         for (int i = group.from; i < group.to; i++) {
             const int first = group.first - origin + i * group.residues, last = first + group.residues;
             const int shift = group.begin + i, low = -shift > j ? -shift : j;
-            struct run run = {.begin = j + (low - j) / LANES * LANES, .end = pings - shift < end ? pings - shift : end};
+            struct run run = {.begin = j + (low - j) / LANES * LANES,
+                              .end = pings - shift < end ? pings - shift : end,
+                              .stored = chunk->raster->stored};
             if (low >= run.end)
                 continue;
             for (int e = first; e < last; e += run.count) {

@@ -119,14 +119,15 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
 {
     const struct invariant *in = bp->state;
     const struct grid *grid = &bp->problem.patches[k];
-    size_t size = real_size(bp->problem.precision), values = row_values(in, k), half = values * (size_t)grid->r_count;
     const struct pixel_window window = problem_window(&bp->problem, k);
+    const size_t size = real_size(bp->problem.precision), values = row_values(in, k);
+    const size_t half = values * (size_t)window.rows;
     struct bp_slab slab = in->slab;
     slab.re = in->slab_re;
     slab.im = in->slab_im;
 #pragma omp parallel for schedule(dynamic, ROWS_SUMMED)
     for (int i = window.row; i < window.row + window.rows; i++) {
-        char *re = (char *)in->sums[k] + (size_t)i * values * size;
+        char *re = (char *)in->sums[k] + (size_t)(i - window.row) * values * size;
         const struct bp_row row = {.medium = &bp->medium,
                                    .table = &bp->table,
                                    .raster = &in->rasters[k],
@@ -143,36 +144,30 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
     }
 }
 
-/* The sums that are stored. */
 static void sums_clear(const struct bp *bp, int k)
 {
     const struct invariant *in = bp->state;
-    const struct bp_raster *raster = &in->rasters[k];
-    const struct pixel_window window = problem_window(&bp->problem, k);
-    const size_t size = real_size(bp->problem.precision), values = row_values(in, k), stride = (size_t)in->strides[k];
-    const size_t half = values * (size_t)bp->problem.patches[k].r_count, shown = (size_t)raster->shown.begin;
-    const size_t bytes = ((size_t)raster->shown.end - shown) * size;
-    for (size_t i = (size_t)window.row; i < (size_t)(window.row + window.rows); i++)
-        for (size_t at = i * values; at < (i + 1) * values; at += stride) {
-            memset((char *)in->sums[k] + (at + shown) * size, 0, bytes);
-            memset((char *)in->sums[k] + (half + at + shown) * size, 0, bytes);
-        }
+    const size_t bytes = 2 * row_values(in, k) * real_size(bp->problem.precision);
+    const int rows = problem_window(&bp->problem, k).rows;
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < rows; i++)
+        memset((char *)in->sums[k] + (size_t)i * bytes, 0, bytes);
 }
 
 /* The sums [r][rho][j] into the pixels [r][rho + ratio j]. */
 static void store(const struct bp *bp, int k, void *pixels)
 {
     const struct invariant *in = bp->state;
-    const struct grid *grid = &bp->problem.patches[k];
     const struct pixel_window window = problem_window(&bp->problem, k);
-    size_t values = row_values(in, k), half = values * (size_t)grid->r_count, columns = (size_t)window.columns;
+    size_t values = row_values(in, k), half = values * (size_t)window.rows, columns = (size_t)window.columns;
     size_t ratio = (size_t)in->rasters[k].ratio, stride = (size_t)in->strides[k];
+    const size_t stored = (size_t)in->rasters[k].stored;
     bool is_double = bp->problem.precision == PRECISION_DOUBLE;
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < (size_t)window.rows; i++)
         for (size_t j = 0; j < columns; j++) {
             size_t n = (size_t)window.column + j, to = 2 * (i * columns + j);
-            size_t from = ((size_t)window.row + i) * values + n % ratio * stride + n / ratio;
+            size_t from = i * values + n % ratio * stride + n / ratio - stored;
             if (is_double) {
                 ((double *)pixels)[to] = ((const double *)in->sums[k])[from];
                 ((double *)pixels)[to + 1] = ((const double *)in->sums[k])[half + from];

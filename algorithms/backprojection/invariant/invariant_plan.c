@@ -324,6 +324,16 @@ static void pieces_plan(const struct bp *bp, struct bp_raster *raster)
     raster->reach = limit > 0 && mach <= BP_SLOW ? piece_reach(mach, limit * c / (2 * M_PI * frequency)) : 0;
 }
 
+/* The wanted columns, and those that a block of vectors may sum beside them. Returns the number of columns with sums. */
+static int columns_plan(struct bp_raster *raster, const struct pixel_window *w)
+{
+    enum { BESIDE = BP_BLOCK_VECTORS * BP_LANES_MOST };
+    const int first = w->column / raster->ratio, end = (w->column + w->columns - 1) / raster->ratio + 1;
+    raster->shown = (struct pair_span){first, end};
+    raster->stored = first > BESIDE ? (first - BESIDE) / BP_LANES_MOST * BP_LANES_MOST : 0;
+    return (end < raster->residue_columns - BESIDE ? end + BESIDE : raster->residue_columns) - raster->stored;
+}
+
 /* Raster and sums of patch k; adds its needs to the lengths. */
 static enum status plan_patch(struct bp *bp, const struct straight_track *track, int k, struct lengths *lengths)
 {
@@ -333,16 +343,14 @@ static enum status plan_patch(struct bp *bp, const struct straight_track *track,
     raster_make(bp, track, grid, raster);
     raster->together = residues_together(bp, steepness(bp, raster, grid));
     pieces_plan(bp, raster);
-    /* Sums of branches are read and written for each shift: no vector of them crosses a cache line. */
-    in->strides[k] = round_up(raster->residue_columns + BP_LANES_MOST, bp->table.branches > 1 ? BP_LANES_MOST : 8);
-    const size_t residues = (size_t)raster_residues(raster);
     const struct pixel_window w = problem_window(&bp->problem, k);
-    raster->shown = (struct pair_span){w.column / raster->ratio, (w.column + w.columns - 1) / raster->ratio + 1};
-    const size_t size = real_size(bp->problem.precision), shown = (size_t)(raster->shown.end - raster->shown.begin);
-    in->sums[k] = bp_part_allocate(bp, 2 * (size_t)grid->r_count * residues * (size_t)in->strides[k] * size,
-                                   2 * (size_t)w.rows * residues, shown * size);
+    /* Sums of branches are read and written for each shift: no vector of them crosses a cache line. */
+    const int columns = columns_plan(raster, &w);
+    in->strides[k] = round_up(columns + BP_LANES_MOST, bp->table.branches > 1 ? BP_LANES_MOST : 8);
+    const size_t residues = (size_t)raster_residues(raster), size = real_size(bp->problem.precision);
+    in->sums[k] = store_room(&bp->engines, 2 * (size_t)w.rows * residues * (size_t)in->strides[k], size, 1);
     if (!in->sums[k])
-        return status_set(STATUS_FAILED, "no memory for the sums of %d x %d pixels", grid->x_count, grid->r_count);
+        return status_set(STATUS_FAILED, "no memory for the sums of %d x %d pixels", w.columns, w.rows);
     const size_t shifts = (size_t)BP_ENTRIES(raster->pings + raster->residue_columns);
     lengths->residues = residues > lengths->residues ? residues : lengths->residues;
     lengths->row = residues * shifts > lengths->row ? residues * shifts : lengths->row;

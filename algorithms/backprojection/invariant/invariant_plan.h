@@ -28,7 +28,7 @@ struct invariant {
     void *tables;
     int patch_count;
     int *strides; /* [patch_count] */
-    void **sums;  /* [patch_count]: re then im, real [r_count][min(ratio, columns)][stride] */
+    void **sums;  /* [patch_count]: re then im, real [wanted rows][min(ratio, columns)][stride] */
 };
 
 /* The callbacks of struct bp_engine, but for execute. */

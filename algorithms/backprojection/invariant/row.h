@@ -146,6 +146,7 @@ struct bp_raster {
     int residue_columns;          /* of one residue at the most: ceil(columns/ratio) */
     struct pair_span shown;       /* wanted columns of a residue: blocks without any are left out */
     double limit;                 /* aperture limit */
+    int stored;                   /* the first column with sums: blocks reach beyond the wanted ones */
     int together; /* residues summed together at most, 2 for up to two taps, 1 for the nearest fine step */
     const struct piece_fit *fit;
     double reach, longest; /* of pieces: piece_reach, 0: each delay is evaluated; greatest half length in m */
@@ -211,8 +212,8 @@ struct bp_row {
     int receivers;                        /* of the slab */
     const double *offsets;                /* [receivers] m ahead of the transmitter */
     const struct bp_row_scratch *scratch; /* the calling thread's */
-    void *re, *im; /* real [min(ratio, columns)][stride] sums: column rho + ratio j at [rho][j] */
-    int stride;    /* >= residue_columns + BP_LANES_MOST, the most of one vector */
+    void *re, *im; /* real [min(ratio, columns)][stride] sums: column rho + ratio j at [rho][j - stored] */
+    int stride;    /* >= those columns + BP_LANES_MOST, the most of one vector */
 };
 
 /* Add the receivers to the row. */

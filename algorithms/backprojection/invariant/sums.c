@@ -189,7 +189,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
     for (int g = chunk->begin; g < chunk->end; g++) {
         const struct bp_row_group *group = &groups[g];
         const size_t first = (size_t)(group->first - origin), complex_taps = taps < 3 ? (size_t)taps : 1;
-        const size_t at = (size_t)group->residue * chunk->stride + (size_t)j;
+        const size_t at = (size_t)group->residue * chunk->stride + (size_t)(j - chunk->raster->stored);
         struct part part = {.offset = scratch->offset + first,
                             .rows = scratch->rows + first,
                             .wr = (const real *)scratch->wr + first * complex_taps,
@@ -325,17 +325,18 @@ INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entr
     const int low = -shift > chunk->raster->shown.begin ? -shift : chunk->raster->shown.begin;
     const int begin = low / LANES * LANES, end = pings - shift < columns ? pings - shift : columns;
     const real *sr = chunk->sr + offset, *si = chunk->si + offset;
-    real *re = chunk->re + (size_t)residue * chunk->stride, *im = chunk->im + (size_t)residue * chunk->stride;
-    for (int j = begin; j < end; j += LANES) {
-        vector_real a = *(vector_real *)(re + j), b = *(vector_real *)(im + j);
+    const size_t at = (size_t)residue * chunk->stride + (size_t)(begin - chunk->raster->stored);
+    real *re = chunk->re + at, *im = chunk->im + at;
+    for (int j = begin; j < end; j += LANES, re += LANES, im += LANES) {
+        vector_real a = *(vector_real *)re, b = *(vector_real *)im;
         for (int t = 0; t < taps; t++) {
             vector_real x = *(const vector_real *)(sr + t * stride + j),
                         y = *(const vector_real *)(si + t * stride + j);
             a = a + x * wr[t] - y * wi[t];
             b = b + x * wi[t] + y * wr[t];
         }
-        *(vector_real *)(re + j) = a;
-        *(vector_real *)(im + j) = b;
+        *(vector_real *)re = a;
+        *(vector_real *)im = b;
     }
 }
 
