@@ -56,29 +56,35 @@ enum status tile_cost(const struct spec *spec, const struct scene *scene, const 
 
 /* The widest tile of tiles->rows that fits; tiles->columns is 0 where not even one of a single column does. Memory
    grows about in proportion to the columns: the next width is where the line through two that fit reaches the limit,
-   so that no plan takes much more than it. */
+   so that no plan takes much more than it. As all tiles get the same width, a wider one is of use where they get fewer,
+   and is tried at the least width that makes as few. */
 static enum status widen(const struct spec *spec, const struct scene *scene, double bytes, struct tiles *tiles,
                          struct tile_cost *cost)
 {
-    enum { GROWTH = 8, CLOSE = 32 };
-    int fits = 0, beyond = tiles->grid.x_count + 1;
-    double slope = INFINITY, held = 0; /* bytes a column; of `fits` */
+    enum { GROWTH = 16, CLOSE = 32 };
+    const int columns = tiles->grid.x_count;
+    int fits = 0, beyond = columns + 1;
+    double held = 0; /* bytes, of `fits` */
     enum status status = STATUS_OK;
-    for (int next = 1; status == STATUS_OK && beyond - fits > 1 + fits / CLOSE && next > fits;) {
+    for (int next = 1; status == STATUS_OK && next > fits;) {
         struct tile_cost tried;
+        double reach = INFINITY;
         tiles->columns = next;
         status = tile_cost(spec, scene, tiles, &tried);
         if (status == STATUS_OK && tried.bytes <= SHARE * bytes) {
-            slope = fits > 0 && tried.bytes > held ? (tried.bytes - held) / (next - fits) : 0;
+            if (fits > 0 && tried.bytes > held)
+                reach = next + (SHARE * bytes - tried.bytes) * (next - fits) / (tried.bytes - held);
             fits = next;
             held = tried.bytes;
             *cost = tried;
         } else {
             beyond = next;
         }
-        const double reach = slope > 0 ? fits + (SHARE * bytes - held) / slope : INFINITY;
-        next = (int)fmin(fmin(reach, (double)GROWTH * fits),
-                         beyond > tiles->grid.x_count ? beyond - 1 : (fits + beyond) / 2);
+        const int most =
+            (int)fmin(fmin(reach, (double)GROWTH * fits), beyond > columns ? columns : (fits + beyond) / 2);
+        next = 0;
+        if (beyond - fits > 1 + fits / CLOSE && fits > 0 && parts_of(columns, most) < parts_of(columns, fits))
+            next = parts_of(columns, parts_of(columns, most));
     }
     tiles->columns = fits;
     return status;

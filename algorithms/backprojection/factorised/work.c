@@ -1,6 +1,7 @@
 /* Counted work of factorised back projection, and its cost, which decides the number of levels. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "backprojection/factorised/factorised.h"
 
@@ -37,37 +38,54 @@ static void count_images(const struct tree *tree, const struct subaperture *part
     }
 }
 
-/* Count every `stride`th line of a patch, for one subaperture: reads of its images, and sums of its records. */
-static void count_pixels(const struct tree *tree, int subaperture, int patch, int stride, struct amounts *sum)
+/* A line of a patch seen from one subaperture: reads of its images, and sums of its records. */
+static void count_line(const struct tree *tree, int subaperture, int patch, int n, struct amounts *sum)
 {
     const struct subaperture *part = &tree->subapertures[subaperture];
     const struct grid *grid = &tree->problem.patches[patch];
     const bool along_x = tree->along_x[patch];
     const double metres = along_x ? grid->x_step : grid->r_step;
     const double records = (double)part->pings * tree->problem.acquisition->receivers;
+    const struct pixel_line line = grid_line(grid, along_x, n);
     struct spans spans;
-    for (int n = 0; n < grid_line_count(grid, along_x); n += stride) {
-        const struct pixel_line line = grid_line(grid, along_x, n);
-        for (int view = 2 * patch; view < 2 * patch + 2; view++) {
-            tree_pixels(tree, subaperture, view, &line, &spans);
-            for (int k = 0; k < spans.count; k++) {
-                const double pixels = spans.span[k].end - spans.span[k].begin;
-                add_spans(tree, polar_step(tree, part->level, view), pixels * metres, pixels, 1, sum);
-            }
+    for (int view = 2 * patch; view < 2 * patch + 2; view++) {
+        tree_pixels(tree, subaperture, view, &line, &spans);
+        for (int k = 0; k < spans.count; k++) {
+            const double pixels = spans.span[k].end - spans.span[k].begin;
+            add_spans(tree, polar_step(tree, part->level, view), pixels * metres, pixels, 1, sum);
         }
-        if (part->level > 0)
-            continue;
-        tree_direct(tree, subaperture, patch, &line, &spans);
-        for (int k = 0; k < spans.count; k++)
-            sum->records += (spans.span[k].end - spans.span[k].begin) * records;
-        sum->blocks += spans.count * records;
     }
+    if (part->level > 0)
+        return;
+    tree_direct(tree, subaperture, patch, &line, &spans);
+    for (int k = 0; k < spans.count; k++)
+        sum->records += (spans.span[k].end - spans.span[k].begin) * records;
+    sum->blocks += spans.count * records;
 }
 
-static int stride_of(const struct tree *tree, int patch)
+/* All lines of a patch, or an estimate from some, the first and the last among them. */
+static struct amounts count_pixels(const struct tree *tree, int subaperture, int patch, bool estimate)
 {
+    enum { SOME = 33 };
     const int lines = grid_line_count(&tree->problem.patches[patch], tree->along_x[patch]);
-    return lines > 64 ? lines / 32 : 1;
+    const int visited = estimate && lines > 2 * SOME ? SOME : lines;
+    const double each = (double)lines / visited;
+    struct amounts sum = {0};
+    for (int k = 0; k < visited; k++) {
+        const int n = visited == lines ? k : (int)((long long)k * (lines - 1) / (visited - 1));
+        count_line(tree, subaperture, patch, n, &sum);
+    }
+    return (struct amounts){sum.records * each, sum.images * each, sum.traces * each,
+                            sum.lines * each,   sum.pings * each,  sum.blocks * each};
+}
+
+static void amounts_add(const struct amounts *some, struct amounts *sum)
+{
+    sum->records += some->records;
+    sum->blocks += some->blocks;
+    sum->images += some->images;
+    sum->traces += some->traces;
+    sum->lines += some->lines;
 }
 
 /* Costs in pairs of the general engine, measured: an image for each pixel; a trace for each sample, and for its taps
@@ -100,14 +118,8 @@ static struct factorised_cost tree_cost(const struct tree *tree)
     for (int n = 0; n < tree->first[tree->settings.stages]; n++) {
         count_images(tree, &tree->subapertures[n], &all);
         for (int k = 0; k < tree->problem.patch_count; k++) {
-            const int stride = stride_of(tree, k);
-            struct amounts some = {0};
-            count_pixels(tree, n, k, stride, &some);
-            all.records += stride * some.records;
-            all.blocks += stride * some.blocks;
-            all.images += stride * some.images;
-            all.traces += stride * some.traces;
-            all.lines += stride * some.lines;
+            const struct amounts some = count_pixels(tree, n, k, true);
+            amounts_add(&some, &all);
         }
     }
     return (struct factorised_cost){all.records, all.blocks, images_of(tree, &all), flops_of(tree, &all), tree->degree};
@@ -202,28 +214,42 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
     return STATUS_OK;
 }
 
+/* What is known of a subaperture and a patch, kept apart for sums that do not depend on the number of threads. */
+static struct amounts *pixels_counted(const struct factorised *plan)
+{
+    const struct tree *tree = &plan->tree;
+    const int patches = tree->problem.patch_count, count = tree->first[tree->settings.stages] * patches;
+    struct amounts *amounts = calloc((size_t)count, sizeof *amounts);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < count; i++)
+        if (amounts)
+            amounts[i] = count_pixels(tree, i / patches, i % patches, tree->problem.estimate);
+    return amounts;
+}
+
 void factorised_count(struct factorised *plan)
 {
     const struct tree *tree = &plan->tree;
     const int patches = tree->problem.patch_count, count = tree->first[tree->settings.stages];
-    struct amounts all = {0};
+    struct amounts all = {0}, *pixels = pixels_counted(plan);
     plan->needed = store_room(&plan->bp.engines, (size_t)(count * patches), sizeof *plan->needed, 1);
     plan->used = store_room(&plan->bp.engines, (size_t)count, sizeof *plan->used, 1);
-    for (int n = 0; plan->needed && plan->used && n < count; n++) {
+    plan->bp.engines.failed |= !pixels;
+    for (int n = 0; !plan->bp.engines.failed && n < count; n++) {
         plan->used[n] = false;
         count_images(tree, &tree->subapertures[n], &all);
         plan->flops += 6 * (double)tree->subapertures[n].values / 2;
         for (int k = 0; k < patches; k++) {
-            struct amounts some = {0};
-            count_pixels(tree, n, k, 1, &some);
-            plan->needed[n * patches + k] = some.lines > 0 || some.records > 0;
+            const struct amounts *some = &pixels[n * patches + k];
+            plan->needed[n * patches + k] = some->lines > 0 || some->records > 0;
             plan->used[n] |= plan->needed[n * patches + k];
-            plan->direct += some.records;
-            all.images += some.images;
-            all.traces += some.traces;
+            plan->direct += some->records;
+            all.images += some->images;
+            all.traces += some->traces;
         }
     }
-    for (int n = count - 1; plan->needed && plan->used && n >= 0; n--) /* parents first */
+    free(pixels);
+    for (int n = count - 1; !plan->bp.engines.failed && n >= 0; n--) /* parents first */
         if (tree->subapertures[n].parent >= 0)
             plan->used[n] |= plan->used[tree->subapertures[n].parent];
     plan->flops += all.records * (4.0 * (plan->bp.table.branches - 1) + 8) + flops_of(tree, &all);
