@@ -86,6 +86,14 @@ cc -std=gnu17 -shared -fPIC -I"$prefix/include" -o mine.so "$prefix/share/doc/sa
 sasbench info ./mine.so >/dev/null || die "a plug-in by the installed header is refused"
 [ -n "$(find "$prefix" -name sasbench.pc)" ] || die "no sasbench.pc"
 
+# MATLAB and Octave find the program beside their functions.
+[ -s "$prefix/share/sasbench/matlab/+sasbench/image.m" ] || die "no functions for MATLAB"
+if command -v octave-cli >/dev/null && ! PATH=/usr/bin:/bin command -v sasbench >/dev/null; then
+    found=$(PATH=/usr/bin:/bin octave-cli -qf --eval "warning('off', 'Octave:shadowed-function');
+        addpath('$prefix/share/sasbench/matlab'); disp(sasbench.program())" 2>err) || die "octave: $(cat err)"
+    [ "$found" = "$prefix/bin/sasbench" ] || die "octave finds the program at: $found"
+fi
+
 # A copy that is removed leaves nothing.
 DESTDIR=$folder/second meson install -C "$build" --no-rebuild --quiet >/dev/null 2>&1
 [ -n "$(find "$folder/second" -type f)" ] || die "nothing is installed the second time"

@@ -1,0 +1,3 @@
+function is = is_octave()
+  is = exist('OCTAVE_VERSION', 'builtin') ~= 0;
+end

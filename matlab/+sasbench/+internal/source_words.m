@@ -1,0 +1,16 @@
+function words = source_words(source, folder, scene)
+% The option that names echoes: a struct, which is written into `folder`, or a file ending in .mat. Another text is a
+% scene, behind the option `scene`, or '' where it stands alone.
+  if isstruct(source)
+    file = [folder '/echoes.mat'];
+    sasbench.internal.mat_write(file, sasbench.internal.echoes_content(source), '-v6');
+    words = {['--echoes=' file]};
+    return
+  end
+  source = sasbench.internal.path_check(source, 'the name of a scene or an echo file');
+  if sasbench.internal.is_mat(source)
+    words = {['--echoes=' source]};
+  else
+    words = {[scene source]};
+  end
+end
