@@ -9,6 +9,6 @@ if ! octave-cli --version >/dev/null 2>&1; then
 fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-mkdir "$folder/temporary" "$folder/work"
+mkdir "$folder/temporary 'files'" "$folder/work"
 cd "$folder/work"
-TMPDIR=$folder/temporary octave-cli -qf "$source/harness/tests/matlab.m" "$program" "$source"
+TMPDIR="$folder/temporary 'files'" octave-cli -qf "$source/harness/tests/matlab.m" "$program" "$source"

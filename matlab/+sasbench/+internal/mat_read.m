@@ -5,6 +5,10 @@ function content = mat_read(file)
   if ~any(file == '/')   % else Octave would look for it on its path
     file = ['./' file];
   end
+  if exist(file, 'file') ~= 2
+    [~, name, ending] = fileparts(file);
+    error('sasbench:failed', '%s%s was not written', name, ending);
+  end
   content = load(file);
   for name = fieldnames(content)'   % Octave reads the text of version 7.3 as numbers
     value = content.(name{1});
