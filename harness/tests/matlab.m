@@ -65,6 +65,7 @@ function images_are_the_programs(program)
   % Turned patches
   patches = rmfield(e, 'point_targets');
   patches.image_grid = [-0.2 0.02 9 19.9 0.025 5 0.01; 0 0.02 7 19.9 0.02 4 0.01]';
+  patches.description = ['two ';'rows'];
   img = sasbench.image(patches, 'bp_nearest');
   assert(isequal(size(img), [1 2]) && isequal(size(img(2).image), [4 7]) && img(2).angle == 0.01);
   row = sasbench.score(img, patches);
@@ -155,6 +156,9 @@ function faults_are_refused(program)
   refused(@() sasbench.load('none.mat'), input, 'none.mat: cannot be read');
   sasbench.image(e, 'bp_nearest', 'output', 'image.mat');
   refused(@() sasbench.load('image.mat'), input, 'is an image file');
+  bad = e;
+  bad.f = @sin;
+  refused(@() sasbench.save('whole.mat', bad), input, 'cannot be written');
   bad = e;
   bad.fs = NaN;
   sasbench.save('whole.mat', e);

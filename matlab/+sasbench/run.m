@@ -30,7 +30,7 @@ function rows = run(scenes, specs, varargin)
   for k = 1:numel(specs)
     words{end + 1} = ['--algorithm=' specs{k}]; %#ok<AGROW>
   end
-  [text, status, message] = sasbench.internal.call(folder, [{'run'}, words], 1); %#ok<ASGLU>
+  [~, status, message] = sasbench.internal.call(folder, [{'run'}, words], 1);
   file = [output '/measurements.csv'];
   if exist(file, 'file') ~= 2
     error('sasbench:failed', '%s', message);

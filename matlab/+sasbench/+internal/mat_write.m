@@ -8,7 +8,11 @@ function mat_write(file, content, version)
     end
     version = '-v7.3';
   end
-  save(file, '-struct', 'content', version);
+  try
+    save(file, '-struct', 'content', version);
+  catch caught
+    error('sasbench:input', 'the variables cannot be written: %s', strrep(caught.message, file, 'their file'));
+  end
 end
 
 function count = bytes(value) %#ok<INUSD>

@@ -3,7 +3,14 @@ function words = source_words(source, folder, scene)
 % scene, behind the option `scene`, or '' where it stands alone.
   if isstruct(source)
     file = [folder '/echoes.mat'];
-    sasbench.internal.mat_write(file, sasbench.internal.echoes_content(source), '-v6');
+    source = sasbench.internal.echoes_content(source);
+    remarks = intersect(fieldnames(source), {'description', 'licence'});
+    source = rmfield(source, remarks);
+    version = '-v6';
+    if sum(structfun(@ischar, source)) > 1   % Octave's -v6 damages texts of several rows
+      version = '-v7';
+    end
+    sasbench.internal.mat_write(file, source, version);
     words = {['--echoes=' file]};
     return
   end
