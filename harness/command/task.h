@@ -58,6 +58,7 @@ enum status task_scenes(const char *command, const struct task *task, int usual_
 enum status command_list(const struct task *task);
 enum status command_conformance(const struct task *task);
 enum status command_info(const struct task *task);
+enum status command_convert(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
 /* Print those of conditions that warn and are not met. */

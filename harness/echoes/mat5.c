@@ -147,26 +147,67 @@ static size_t data_pass(struct source *source, const struct tag *tag)
     return found;
 }
 
-/* Read up to the name, which must be the one that libmatio found: then its data follow. */
-static bool name_reach(struct source *source, const char *name)
+/* Read an element's data, which may be cut short. */
+static void data_take(struct source *source, const struct tag *tag, void *to)
+{
+    if (tag->is_small) {
+        memcpy(to, tag->small, tag->length);
+    } else {
+        source_take(source, to, tag->length);
+        source_take(source, NULL, (8 - tag->length % 8) % 8);
+    }
+}
+
+/* Pass over flags and dimensions. */
+static bool head_pass(struct source *source)
 {
     struct tag tag;
-    char text[64] = "";
-    for (int k = 0; k < 2; k++) { /* flags, dimensions */
+    for (int k = 0; k < 2; k++) {
         if (!tag_take(source, &tag) || data_pass(source, &tag) != tag.length) {
             return false;
         }
     }
-    if (!tag_take(source, &tag) || tag.length != strlen(name) || tag.length >= sizeof text) {
+    return true;
+}
+
+/* Read up to the name, which must be the one that libmatio found: then its data follow. */
+static bool name_reach(struct source *source, const char *name, size_t length)
+{
+    struct tag tag;
+    char text[64] = "";
+    if (!head_pass(source) || !tag_take(source, &tag) || tag.length != length || tag.length >= sizeof text) {
         return false;
     }
-    if (tag.is_small) {
-        memcpy(text, tag.small, tag.length);
-    } else {
-        source_take(source, (unsigned char *)text, tag.length);
-        source_take(source, NULL, (8 - tag.length % 8) % 8);
+    data_take(source, &tag, text);
+    return strncmp(text, name, length) == 0;
+}
+
+/* From a struct's name to the data of one of its fields: the length of each name, the names, the fields in turn. */
+static bool field_reach(struct source *source, const char *name)
+{
+    enum { NAMES_MOST = 1 << 12 };
+    struct tag tag;
+    unsigned char size[4] = {0};
+    char names[NAMES_MOST] = "";
+    if (!tag_take(source, &tag) || tag.length != sizeof size) {
+        return false;
     }
-    return strcmp(text, name) == 0;
+    data_take(source, &tag, size);
+    const size_t each = word(size, source->is_little_endian);
+    if (!tag_take(source, &tag) || tag.length >= sizeof names || each == 0 || each > tag.length) {
+        return false;
+    }
+    const size_t count = tag.length / each;
+    data_take(source, &tag, names);
+    for (size_t k = 0; k < count && tag_take(source, &tag); k++) {
+        if (strncmp(names + k * each, name, each) == 0) {
+            return head_pass(source) && tag_take(source, &tag) && data_pass(source, &tag) == tag.length;
+        }
+        if (data_pass(source, &tag) != tag.length) {
+            return false;
+        }
+    }
+    return false;
 }
 
 /* Bytes of a number as it is stored; 0 for types that libmatio cannot read. */
@@ -207,7 +248,9 @@ enum status mat5_check(const char *path, const struct stored *stored, const stru
     if (fseeko(file->file, file->first, SEEK_SET) != 0 || (source.is_packed && inflateInit(&source.stream) != Z_OK)) {
         return status_set(STATUS_FAILED, "%s: no memory to read variable `%s`", path, stored->name);
     }
-    const bool is_found = (!source.is_packed || tag_take(&source, &matrix)) && name_reach(&source, stored->name);
+    const size_t length = strcspn(stored->name, "/");
+    const bool is_found = (!source.is_packed || tag_take(&source, &matrix)) && name_reach(&source, stored->name, length)
+                          && (!stored->name[length] || field_reach(&source, stored->name + length + 1));
     enum status status = is_found ? parts_check(path, stored, &source)
                                   : status_set(STATUS_INVALID, "%s: variable `%s` is damaged; a whole file is needed",
                                                path, stored->name);

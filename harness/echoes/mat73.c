@@ -216,3 +216,9 @@ bool mat73_read_pings(const char *path, const char *name, const struct pings *pi
     H5Sclose(space);
     return read;
 }
+
+bool mat73_read(const char *path, const struct stored *stored, double complex *values)
+{
+    struct data_set set;
+    return set_open(path, stored, &set) && slab_read(&set, H5S_ALL, H5S_ALL, stored->count, PRECISION_DOUBLE, values);
+}

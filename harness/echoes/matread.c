@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <hdf5.h>
 #include <matio.h>
 #include <signal.h>
 #include <stdint.h>
@@ -108,7 +109,7 @@ static void limit_memory_and_time(size_t bytes)
 #endif
 }
 
-static bool write_fully(int descriptor, const void *data, size_t size)
+bool write_fully(int descriptor, const void *data, size_t size)
 {
     for (const char *next = data; size > 0;) {
         ssize_t written = write(descriptor, next, size);
@@ -124,8 +125,8 @@ static bool write_fully(int descriptor, const void *data, size_t size)
 }
 
 /* The three dimensions of a variable, if it has no more and the file can hold them: zlib packs at most 1032:1. */
-static enum status check_claim(const char *path, const struct wanted *wanted, const matvar_t *matvar, size_t file_size,
-                               struct variable *variable)
+enum status check_claim(const char *path, const struct wanted *wanted, const matvar_t *matvar, size_t file_size,
+                        struct variable *variable)
 {
     *variable = (struct variable){
         .is_complex = matvar->isComplex != 0, .is_single = matvar->class_type == MAT_C_SINGLE, .dims = {1, 1, 1}};
@@ -208,6 +209,19 @@ static bool send_pings(const char *path, const struct wanted *wanted, const mat_
     return sent;
 }
 
+/* The variable itself, or the field of a struct that `name` asks for as "STRUCT/FIELD"; NULL: another. */
+static matvar_t *variable_named(matvar_t *matvar, const char *name)
+{
+    const size_t length = strcspn(name, "/");
+    if (!matvar->name || strlen(matvar->name) != length || strncmp(matvar->name, name, length) != 0)
+        return NULL;
+    if (!name[length])
+        return matvar;
+    const bool is_one =
+        matvar->class_type == MAT_C_STRUCT && matvar->rank == 2 && matvar->dims[0] == 1 && matvar->dims[1] == 1;
+    return is_one ? Mat_VarGetStructFieldByName(matvar, name + length + 1, 0) : NULL;
+}
+
 /* `place` is the variable's element in a file of version 5. */
 static enum status send_variable(const char *path, const struct wanted *wanted, int index, mat_t *mat, matvar_t *matvar,
                                  const struct mat5 *place, size_t file_size, int descriptor)
@@ -283,10 +297,14 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
                                   int descriptor)
 {
     matio_silence();
+    if (strchr(wanted->name, '/') && H5Fis_hdf5(path) > 0)
+        return hdf5_fields_send(path, wanted, count, file_size, descriptor);
     mat_t *mat = Mat_Open(path, MAT_ACC_RDONLY);
     if (!mat || Mat_GetVersion(mat) == MAT_FT_MAT4) {
-        return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3%s", path,
-                          file_other_format(path));
+        return strchr(wanted->name, '/')
+                   ? status_set(STATUS_INVALID, "%s: is neither a MATLAB file of version 5 or 7.3 nor HDF5", path)
+                   : status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3%s", path,
+                                file_other_format(path));
     }
     struct mat5 place = {0};
     if (Mat_GetVersion(mat) == MAT_FT_MAT5 && (mat5_count(path) < 0 || !mat5_open(&place, path))) {
@@ -299,8 +317,9 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     while (status == STATUS_OK && (matvar = Mat_VarReadNextInfo(mat))) {
         mat5_next(&place); /* in step with libmatio */
         for (int i = 0; i < count && status == STATUS_OK; i++) {
-            if (!sent[i] && matvar->name && strcmp(matvar->name, wanted[i].name) == 0) {
-                status = send_variable(path, wanted, i, mat, matvar, &place, file_size, descriptor);
+            matvar_t *named = sent[i] ? NULL : variable_named(matvar, wanted[i].name);
+            if (named) {
+                status = send_variable(path, wanted, i, mat, named, &place, file_size, descriptor);
                 sent[i] = true;
             }
         }
@@ -314,7 +333,7 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     }
     mat5_close(&place);
     for (int i = 0; i < count && status == STATUS_OK && *inside; i++) {
-        if (!sent[i] && !wanted[i].is_optional) {
+        if (!sent[i] && !wanted[i].is_optional && !strchr(wanted[i].name, '/')) {
             status = status_set(
                 STATUS_INVALID,
                 "%s: variable `%s` is missing; %s is needed. The file holds a struct `%s`: its fields must be "

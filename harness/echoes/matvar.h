@@ -12,7 +12,8 @@
 enum kind { KIND_TEXT, KIND_SCALAR, KIND_REAL, KIND_COMPLEX };
 
 struct pings;
-/* A variable that a file may or must have. */
+/* A variable that a file may or must have. A name "GROUP/.../NAME" is a field: of a struct in version 5, or a data set
+   of any HDF5 file. A call asks for variables or for fields of numbers, not for both. */
 struct wanted {
     const char *name;
     enum kind kind;
@@ -91,6 +92,8 @@ bool mat73_read_pings(const char *path, const char *name, const struct pings *pi
    STATUS_INVALID, with the length found and the one needed. */
 enum status mat5_check(const char *path, const struct stored *stored, const struct mat5 *file);
 enum status mat73_check(const char *path, const struct stored *stored);
+/* Read all numbers of a data set as complex double; count of them. In a process that ends soon. */
+bool mat73_read(const char *path, const struct stored *stored, double complex *values);
 bool mat73_has(const char *path, const char *name);
 /* For a file of no such version: what it probably is, and how to write a MATLAB file. */
 const char *file_other_format(const char *path);

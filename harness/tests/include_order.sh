@@ -12,7 +12,7 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
                 "algorithms/backprojection/general algorithms/backprojection/invariant " \
                 "algorithms/backprojection/factorised algorithms/range_migration algorithms/range_migration/delay " \
                 "algorithms/wavenumber algorithms/methods harness/text harness/files " \
-                "harness/echoes harness/scene harness/metrics harness/guests harness/imaging harness/conformance harness/choice harness/results harness/measure harness/show " \
+                "harness/echoes harness/convert harness/scene harness/metrics harness/guests harness/imaging harness/conformance harness/choice harness/results harness/measure harness/show " \
                 "harness/report harness/sweep harness/advise harness/ranks harness/run harness/bench harness/stability harness/gate " \
                 "harness/papers harness/claims harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/echoes harness/tests/scene harness/tests/metrics " \

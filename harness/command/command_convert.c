@@ -1,0 +1,43 @@
+/* The command `convert`: recordings in public layouts as an echo file. */
+#include <stdio.h>
+#include <sys/stat.h>
+
+#include "command/task.h"
+#include "convert/layouts.h"
+#include "echoes/matfile.h"
+
+/* A recording must not be replaced by its echoes. */
+static enum status inputs_check(const struct task *task)
+{
+    struct stat output, input;
+    if (stat(task->output, &output) != 0)
+        return STATUS_OK;
+    for (int k = 0; k < task->name_count; k++)
+        if (stat(task->names[k], &input) == 0 && input.st_dev == output.st_dev && input.st_ino == output.st_ino)
+            return status_set(STATUS_INVALID, "convert: -o %s is the recording itself; another file is needed",
+                              task->output);
+    return STATUS_OK;
+}
+
+enum status command_convert(const struct task *task)
+{
+    struct acquisition acquisition;
+    struct echoes echoes;
+    const char *layout = "";
+    char description[200];
+    enum status status = output_check("convert", task->output);
+    if (status == STATUS_OK)
+        status = inputs_check(task);
+    if (status == STATUS_OK)
+        status = convert_read(task->names, task->name_count, &layout, &acquisition, &echoes);
+    if (status != STATUS_OK)
+        return status;
+    snprintf(description, sizeof description, "converted from %s", layout);
+    status = echo_file_write(task->output, &echoes, &(struct echo_notes){.description = description});
+    if (status == STATUS_OK)
+        printf("%s: %d pings, %d receiver%s, %d samples\n", layout, acquisition.pings, acquisition.receivers,
+               acquisition.receivers == 1 ? "" : "s", acquisition.samples);
+    echoes_free(&echoes);
+    acquisition_free(&acquisition);
+    return status;
+}

@@ -1,0 +1,27 @@
+/* What each layout of recordings has in common: its fields, and how they become echoes. */
+#ifndef SASBENCH_CONVERT_LAYOUT_H
+#define SASBENCH_CONVERT_LAYOUT_H
+
+#include "echoes/matvar.h"
+
+struct layout {
+    const char *name; /* for messages */
+    const struct wanted *fields;
+    int field_count; /* <= WANTED_MAX */
+    bool takes_several;
+    /* Read `count` files of it. *acquisition and *echoes (double) are zeroed before and the caller's afterwards, also
+       after a failure. Errors: STATUS_INVALID naming file, field, value and what is accepted; STATUS_FAILED without
+       memory. */
+    enum status (*read)(const char *const *paths, int count, struct acquisition *acquisition, struct echoes *echoes);
+};
+
+extern const struct layout gotcha_layout;
+
+/* variables_read, and refuse numbers that are not finite. Same ownership and errors. */
+enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables);
+/* The real part of number i of a field. */
+double field_number(const struct variable *field, size_t i);
+/* Refuse a field whose shape does not fit; `why` says what it must fit. */
+enum status field_refuse(const char *path, const struct wanted *wanted, const struct variable *field, const char *why);
+
+#endif

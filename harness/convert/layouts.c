@@ -1,0 +1,110 @@
+/* The table of layouts, and which one a file has. */
+#include "convert/layouts.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "convert/layout.h"
+#include "echoes/matfile.h"
+#include "text/text_append.h"
+
+static const struct layout *const layouts[] = {&gotcha_layout};
+
+enum { LAYOUTS = sizeof layouts / sizeof *layouts };
+
+double field_number(const struct variable *field, size_t i)
+{
+    return creal(field->values[i]);
+}
+
+enum status field_refuse(const char *path, const struct wanted *wanted, const struct variable *field, const char *why)
+{
+    return status_set(STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu], %s; %s is needed", path, wanted->name,
+                      field->dims[0], field->dims[1], field->dims[2], why, wanted->accepted);
+}
+
+enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables)
+{
+    enum status status = variables_read(path, fields, count, variables);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < count; k++) {
+        const struct variable *v = &variables[k];
+        for (size_t i = 0; v->values && i < variable_count(v); i++) {
+            const double complex z = v->values[i];
+            if (isfinite(creal(z)) && isfinite(cimag(z)))
+                continue;
+            status = status_set(STATUS_INVALID,
+                                "%s: variable `%s` at (%zu, %zu, %zu) is %g%+gi; finite numbers are "
+                                "needed",
+                                path, fields[k].name, i % v->dims[0] + 1, i / v->dims[0] % v->dims[1] + 1,
+                                i / v->dims[0] / v->dims[1] + 1, creal(z), cimag(z));
+            variables_free(variables, count);
+            return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* How many of a layout's fields the file has, whatever is in them. */
+static enum status fields_count(const char *path, const struct layout *layout, int *found)
+{
+    const struct pings none = {0};
+    struct wanted any[WANTED_MAX] = {{.name = NULL}};
+    struct variable variables[WANTED_MAX];
+    for (int k = 0; k < layout->field_count; k++)
+        any[k] = (struct wanted){layout->fields[k].name, KIND_COMPLEX, true, layout->fields[k].accepted, &none};
+    const enum status status = variables_read(path, any, layout->field_count, variables);
+    *found = 0;
+    for (int k = 0; k < layout->field_count && status == STATUS_OK; k++)
+        *found += variables[k].dims[0] > 0;
+    return status;
+}
+
+static enum status layout_find(const char *path, const struct layout **layout)
+{
+    char known[600] = "";
+    int most = 0;
+    for (int k = 0; k < LAYOUTS; k++) {
+        int found = 0;
+        const enum status status = fields_count(path, layouts[k], &found);
+        if (status != STATUS_OK)
+            return status;
+        if (found > most) {
+            most = found;
+            *layout = layouts[k];
+        }
+        text_append(known, sizeof known, "%s%s (%s, ...)", k ? ", " : "", layouts[k]->name, layouts[k]->fields[0].name);
+    }
+    return most > 0 ? STATUS_OK
+                    : status_set(STATUS_INVALID, "%s: has no field of a known layout; known: %s", path, known);
+}
+
+enum status convert_read(const char *const *paths, int count, const char **layout, struct acquisition *acquisition,
+                         struct echoes *echoes)
+{
+    const struct layout *first = NULL, *other = NULL;
+    *acquisition = (struct acquisition){0};
+    *echoes = (struct echoes){0};
+    for (int k = 0; k < count; k++) {
+        const enum status status = layout_find(paths[k], &other);
+        if (status != STATUS_OK)
+            return status;
+        first = first ? first : other;
+        if (other != first)
+            return status_set(STATUS_INVALID, "%s: is %s, %s is %s; files of one layout are needed", paths[k],
+                              other->name, paths[0], first->name);
+    }
+    if (count > 1 && !first->takes_several)
+        return status_set(STATUS_INVALID, "%s: is %s, of which one file is converted at a time; %d are given", paths[0],
+                          first->name, count);
+    *layout = first->name;
+    enum status status = first->read(paths, count, acquisition, echoes);
+    if (status == STATUS_OK)
+        status = acquisition_check(acquisition, paths[0]);
+    if (status != STATUS_OK) {
+        echoes_free(echoes);
+        acquisition_free(acquisition);
+    }
+    return status;
+}
