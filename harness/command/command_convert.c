@@ -21,23 +21,21 @@ static enum status inputs_check(const struct task *task)
 
 enum status command_convert(const struct task *task)
 {
-    struct acquisition acquisition;
-    struct echoes echoes;
-    const char *layout = "";
+    struct recording recording;
     char description[200];
     enum status status = output_check("convert", task->output);
     if (status == STATUS_OK)
         status = inputs_check(task);
     if (status == STATUS_OK)
-        status = convert_read(task->names, task->name_count, &layout, &acquisition, &echoes);
+        status = recording_read(task->names, task->name_count, &recording);
     if (status != STATUS_OK)
         return status;
-    snprintf(description, sizeof description, "converted from %s", layout);
-    status = echo_file_write(task->output, &echoes, &(struct echo_notes){.description = description});
+    const struct acquisition *a = &recording.acquisition;
+    snprintf(description, sizeof description, "converted from %s", recording.layout);
+    status = echo_file_write(task->output, &recording.echoes, &(struct echo_notes){.description = description});
     if (status == STATUS_OK)
-        printf("%s: %d pings, %d receiver%s, %d samples\n", layout, acquisition.pings, acquisition.receivers,
-               acquisition.receivers == 1 ? "" : "s", acquisition.samples);
-    echoes_free(&echoes);
-    acquisition_free(&acquisition);
+        printf("%s: %d pings, %d receiver%s, %d samples\n%s%s", recording.layout, a->pings, a->receivers,
+               a->receivers == 1 ? "" : "s", a->samples, recording.note, *recording.note ? "\n" : "");
+    recording_free(&recording);
     return status;
 }

@@ -179,8 +179,10 @@ static enum status gotcha_fill(const char *const *paths, int count, const struct
     return status;
 }
 
-static enum status gotcha_read(const char *const *paths, int count, struct acquisition *a, struct echoes *echoes)
+static enum status gotcha_read(const char *const *paths, int count, struct recording *recording)
 {
+    struct acquisition *a = &recording->acquisition;
+    struct echoes *echoes = &recording->echoes;
     struct steps steps;
     int pulses = 0;
     enum status status = files_survey(paths, count, &steps, &pulses);

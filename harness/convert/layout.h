@@ -2,6 +2,7 @@
 #ifndef SASBENCH_CONVERT_LAYOUT_H
 #define SASBENCH_CONVERT_LAYOUT_H
 
+#include "convert/layouts.h"
 #include "echoes/matvar.h"
 
 struct layout {
@@ -9,13 +10,12 @@ struct layout {
     const struct wanted *fields;
     int field_count; /* <= WANTED_MAX */
     bool takes_several;
-    /* Read `count` files of it. *acquisition and *echoes (double) are zeroed before and the caller's afterwards, also
-       after a failure. Errors: STATUS_INVALID naming file, field, value and what is accepted; STATUS_FAILED without
-       memory. */
-    enum status (*read)(const char *const *paths, int count, struct acquisition *acquisition, struct echoes *echoes);
+    /* Read `count` files of it. *recording is zeroed before and the caller's afterwards, also after a failure. Errors:
+       STATUS_INVALID naming file, field, value and what is accepted; STATUS_FAILED without memory. */
+    enum status (*read)(const char *const *paths, int count, struct recording *recording);
 };
 
-extern const struct layout gotcha_layout;
+extern const struct layout airsas_layout, gotcha_layout;
 
 /* variables_read, and refuse numbers that are not finite. Same ownership and errors. */
 enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables);

@@ -8,7 +8,7 @@
 #include "echoes/matfile.h"
 #include "text/text_append.h"
 
-static const struct layout *const layouts[] = {&gotcha_layout};
+static const struct layout *const layouts[] = {&gotcha_layout, &airsas_layout};
 
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
@@ -80,12 +80,16 @@ static enum status layout_find(const char *path, const struct layout **layout)
                     : status_set(STATUS_INVALID, "%s: has no field of a known layout; known: %s", path, known);
 }
 
-enum status convert_read(const char *const *paths, int count, const char **layout, struct acquisition *acquisition,
-                         struct echoes *echoes)
+void recording_free(struct recording *recording)
+{
+    echoes_free(&recording->echoes);
+    acquisition_free(&recording->acquisition);
+}
+
+enum status recording_read(const char *const *paths, int count, struct recording *recording)
 {
     const struct layout *first = NULL, *other = NULL;
-    *acquisition = (struct acquisition){0};
-    *echoes = (struct echoes){0};
+    *recording = (struct recording){.layout = NULL};
     for (int k = 0; k < count; k++) {
         const enum status status = layout_find(paths[k], &other);
         if (status != STATUS_OK)
@@ -98,13 +102,11 @@ enum status convert_read(const char *const *paths, int count, const char **layou
     if (count > 1 && !first->takes_several)
         return status_set(STATUS_INVALID, "%s: is %s, of which one file is converted at a time; %d are given", paths[0],
                           first->name, count);
-    *layout = first->name;
-    enum status status = first->read(paths, count, acquisition, echoes);
+    recording->layout = first->name;
+    enum status status = first->read(paths, count, recording);
     if (status == STATUS_OK)
-        status = acquisition_check(acquisition, paths[0]);
-    if (status != STATUS_OK) {
-        echoes_free(echoes);
-        acquisition_free(acquisition);
-    }
+        status = acquisition_check(&recording->acquisition, paths[0]);
+    if (status != STATUS_OK)
+        recording_free(recording);
     return status;
 }

@@ -4,10 +4,16 @@
 
 #include "echoes/echo_data.h"
 
-/* Read the files, all of one layout, which their fields decide. *layout is its name, never freed. *acquisition and
-   *echoes (double) are the caller's: acquisition_free, echoes_free. Errors, with nothing to free: STATUS_INVALID naming
+struct recording {
+    const char *layout; /* its name */
+    struct acquisition acquisition;
+    struct echoes echoes; /* double; they point to this acquisition, so the struct must stay where it is */
+    char note[200];       /* what the user must know of the conversion; empty: nothing */
+};
+
+/* Read the files, all of one layout, which their fields decide; freed with recording_free. Errors, with nothing to free: STATUS_INVALID naming
    file, field, value and what is accepted; STATUS_FAILED without memory. */
-enum status convert_read(const char *const *paths, int count, const char **layout, struct acquisition *acquisition,
-                         struct echoes *echoes);
+enum status recording_read(const char *const *paths, int count, struct recording *recording);
+void recording_free(struct recording *recording);
 
 #endif
