@@ -35,7 +35,7 @@ const struct command commands[] = {
     {"simulate", "write a scene's echoes", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate,
      .example = "simulate study/quick -o echoes.mat"},
     {"convert", "make an echo file of recordings in a public layout", "IN ... -o FILE.mat",
-     "make an echo file of recordings in a public layout, which their fields decide: AFRL Gotcha, AirSAS", "o", 1,
+     "make an echo file of recordings in a public layout, which their fields decide: AFRL Gotcha, AirSAS, zea", "o", 1,
      INT_MAX, command_convert, .example = "convert pass1.mat pass2.mat -o echoes.mat"},
     {"image", "form one image",
      "(--scene SCENE | --echoes FILE.mat [--grid GRID]) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "

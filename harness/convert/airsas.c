@@ -3,7 +3,6 @@
    Sample n of a ping lies at (n - group delay)/fs. Its spectrum about the chirp's middle becomes baseband; the chirp
    becomes the pulse. The sound speed follows the temperature of each ping; an echo file has one, their mean. */
 #include <complex.h>
-#include <fftw3.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -182,33 +181,23 @@ static void pulse_fill(const struct chirp *chirp, struct acquisition *a)
 }
 
 /* All channels and pings, real samples to their band about bin `centre`. */
-static enum status samples_fill(const struct variable *v, const struct acquisition *a, int centre, int half,
-                                double complex *samples)
+static enum status samples_fill(const struct variable *v, const struct variable *first, const struct acquisition *a,
+                                int centre, int half, double complex *samples)
 {
-    const size_t length = v->dims[0], each = (size_t)a->samples;
+    const size_t length = first->dims[0], receivers = (size_t)a->receivers;
     const double turns = a->fc * a->t0[0];
-    const double complex factor = 2.0 / (double)length * cexp(-2 * M_PI * I * (turns - round(turns)));
-    double *line = fftw_malloc(length * sizeof *line);
-    double complex *spectrum = fftw_malloc((length / 2 + 1) * sizeof *spectrum);
-    fftw_plan plan = line && spectrum ? fftw_plan_dft_r2c_1d((int)length, line, spectrum, FFTW_ESTIMATE) : NULL;
-    struct band band;
-    enum status status = band_open(2 * half, a->samples, &band);
-    if (status == STATUS_OK && !plan)
-        status = status_set(STATUS_FAILED, "out of memory for a transform of %zu samples", length);
+    struct real_band band;
+    enum status status = real_band_open((int)length, centre, half, a->samples, &band);
     for (size_t p = 0; p < (size_t)a->pings && status == STATUS_OK; p++)
-        for (int k = 0, m = 0; k < CHANNELS; k++) {
+        for (size_t k = 0, m = 0; k < CHANNELS; k++) {
             if (!v[k].values)
                 continue;
             for (size_t n = 0; n < length; n++)
-                line[n] = field_number(&v[k], p * length + n);
-            fftw_execute(plan);
-            band_samples(&band, spectrum + centre - half, 0, factor,
-                         samples + (p * (size_t)a->receivers + (size_t)m++) * each);
+                band.reals[n] = field_number(&v[k], p * length + n);
+            real_band_samples(&band, cexp(-2 * M_PI * I * (turns - round(turns))),
+                              samples + (p * receivers + m++) * (size_t)a->samples);
         }
-    band_close(&band);
-    fftw_destroy_plan(plan);
-    fftw_free(spectrum);
-    fftw_free(line);
+    real_band_close(&band);
     return status;
 }
 
@@ -252,7 +241,7 @@ static enum status recording_fill(const char *path, const struct variable *v, in
         return status;
     geometry_fill(v, sensors, -chirp->delay_samples / chirp->fs, a);
     pulse_fill(chirp, a);
-    return samples_fill(v, a, centre, half, (double complex *)recording->echoes.samples);
+    return samples_fill(v, &v[first], a, centre, half, (double complex *)recording->echoes.samples);
 }
 
 static enum status airsas_read(const char *const *paths, int count, struct recording *recording)

@@ -36,7 +36,7 @@ struct steps {
 static enum status shapes_check(const char *path, const struct variable *v)
 {
     const size_t *fp = v[FP].dims;
-    if (fp[0] < 2 || fp[0] > INT_MAX / 4 || fp[1] > INT_MAX || fp[2] != 1)
+    if (fp[0] < 2 || fp[0] > INT_MAX / 4 || fp[1] > INT_MAX || !variable_has_shape(&v[FP], fp[0], fp[1], 1))
         return field_refuse(path, &fields[FP], &v[FP], "which is no phase history");
     for (int k = FREQ; k < FIELDS; k++)
         if (!variable_is_vector(&v[k]) || variable_count(&v[k]) != fp[k == FREQ ? 0 : 1]) {

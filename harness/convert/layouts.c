@@ -8,7 +8,7 @@
 #include "echoes/matfile.h"
 #include "text/text_append.h"
 
-static const struct layout *const layouts[] = {&gotcha_layout, &airsas_layout};
+static const struct layout *const layouts[] = {&gotcha_layout, &airsas_layout, &zea_layout};
 
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
@@ -19,8 +19,12 @@ double field_number(const struct variable *field, size_t i)
 
 enum status field_refuse(const char *path, const struct wanted *wanted, const struct variable *field, const char *why)
 {
-    return status_set(STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu], %s; %s is needed", path, wanted->name,
-                      field->dims[0], field->dims[1], field->dims[2], why, wanted->accepted);
+    char shape[120] = "";
+    for (int k = 0; k < DIMENSIONS_MOST; k++)
+        if (k < 3 || field->dims[k] != 1)
+            text_append(shape, sizeof shape, "%s%zu", k ? " x " : "", field->dims[k]);
+    return status_set(STATUS_INVALID, "%s: variable `%s` is [%s], %s; %s is needed", path, wanted->name, shape, why,
+                      wanted->accepted);
 }
 
 enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables)

@@ -124,15 +124,15 @@ bool write_fully(int descriptor, const void *data, size_t size)
     return true;
 }
 
-/* The three dimensions of a variable, if it has no more and the file can hold them: zlib packs at most 1032:1. */
+/* The dimensions of a variable, if it has no more than it may and the file can hold them: zlib packs at most 1032:1. */
 enum status check_claim(const char *path, const struct wanted *wanted, const matvar_t *matvar, size_t file_size,
                         struct variable *variable)
 {
     *variable = (struct variable){
-        .is_complex = matvar->isComplex != 0, .is_single = matvar->class_type == MAT_C_SINGLE, .dims = {1, 1, 1}};
+        .is_complex = matvar->isComplex != 0, .is_single = matvar->class_type == MAT_C_SINGLE, .dims = {1, 1, 1, 1, 1}};
     size_t bytes = 16; /* at most, for one number */
     for (int i = 0; i < matvar->rank; i++) {
-        if (i < 3) {
+        if (i < (strchr(wanted->name, '/') ? DIMENSIONS_MOST : 3)) {
             variable->dims[i] = matvar->dims[i];
         } else if (matvar->dims[i] != 1) {
             return status_set(STATUS_INVALID, "%s: variable `%s` has %d dimensions; %s is needed", path, wanted->name,

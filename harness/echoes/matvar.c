@@ -8,17 +8,20 @@
 
 size_t variable_count(const struct variable *variable)
 {
-    return size_product(variable->dims[0], variable->dims[1], variable->dims[2], 1);
+    const size_t *dims = variable->dims;
+    return size_product(size_product(dims[0], dims[1], dims[2], 1), dims[3], dims[4], 1);
 }
 
 bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages)
 {
-    return variable->dims[0] == rows && variable->dims[1] == columns && variable->dims[2] == pages;
+    return variable->dims[0] == rows && variable->dims[1] == columns && variable->dims[2] == pages
+           && variable->dims[3] == 1 && variable->dims[4] == 1;
 }
 
 bool variable_is_vector(const struct variable *variable)
 {
-    return (variable->dims[0] == 1 || variable->dims[1] == 1) && variable->dims[2] == 1;
+    return variable_has_shape(variable, 1, variable->dims[1], 1)
+           || variable_has_shape(variable, variable->dims[0], 1, 1);
 }
 
 void variables_free(struct variable *variables, int count)

@@ -22,13 +22,14 @@ struct wanted {
     const struct pings *pings; /* NULL: all of it is read; else these pings of [... x P], to a place of their own */
 };
 
-enum { WANTED_MAX = 20 };
+enum { WANTED_MAX = 20, DIMENSIONS_MOST = 5 };
 
 /* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
 struct variable {
     bool is_complex, is_single; /* of MATLAB's class single */
-    size_t dims[3];             /* trailing dimensions of 1 filled in; 0: not in the file */
-    double complex *values;     /* 64-byte aligned, free(); NULL: not in the file, or read by pings */
+    size_t
+        dims[DIMENSIONS_MOST]; /* trailing dimensions of 1 filled in; more than 3 of fields alone; 0: not in the file */
+    double complex *values;    /* 64-byte aligned, free(); NULL: not in the file, or read by pings */
 };
 
 /* Read the wanted variables of a file (count <= WANTED_MAX) into variables[count], freed with variables_free. Other
