@@ -94,20 +94,20 @@ enum status recording_read(const char *const *paths, int count, struct recording
 {
     const struct layout *first = NULL, *other = NULL;
     *recording = (struct recording){.layout = NULL};
-    for (int k = 0; k < count; k++) {
-        const enum status status = layout_find(paths[k], &other);
-        if (status != STATUS_OK)
-            return status;
-        first = first ? first : other;
-        if (other != first)
-            return status_set(STATUS_INVALID, "%s: is %s, %s is %s; files of one layout are needed", paths[k],
-                              other->name, paths[0], first->name);
+    enum status status = layout_find(paths[0], &first);
+    for (int k = 1; k < count && status == STATUS_OK; k++) {
+        status = layout_find(paths[k], &other);
+        if (status == STATUS_OK && other != first)
+            status = status_set(STATUS_INVALID, "%s: is %s, %s is %s; files of one layout are needed", paths[k],
+                                other->name, paths[0], first->name);
     }
+    if (status != STATUS_OK)
+        return status;
     if (count > 1 && !first->takes_several)
         return status_set(STATUS_INVALID, "%s: is %s, of which one file is converted at a time; %d are given", paths[0],
                           first->name, count);
     recording->layout = first->name;
-    enum status status = first->read(paths, count, recording);
+    status = first->read(paths, count, recording);
     if (status == STATUS_OK)
         status = acquisition_check(&recording->acquisition, paths[0]);
     if (status != STATUS_OK)

@@ -11,8 +11,8 @@ struct recording {
     char note[200];       /* what the user must know of the conversion; empty: nothing */
 };
 
-/* Read the files, all of one layout, which their fields decide; freed with recording_free. Errors, with nothing to free: STATUS_INVALID naming
-   file, field, value and what is accepted; STATUS_FAILED without memory. */
+/* Read count >= 1 files, all of one layout, which their fields decide; freed with recording_free. Errors, with nothing
+   to free: STATUS_INVALID naming file, field, value and what is accepted; STATUS_FAILED without memory. */
 enum status recording_read(const char *const *paths, int count, struct recording *recording);
 void recording_free(struct recording *recording);
 

@@ -65,7 +65,8 @@ static enum status field_send(const char *path, const struct wanted *wanted, int
     if (status != STATUS_OK)
         return status;
     if (wanted[index].pings) /* its dimensions alone */
-        return write_fully(descriptor, &packet, sizeof packet) ? STATUS_OK : STATUS_FAILED;
+        return write_fully(descriptor, &packet, sizeof packet) ? STATUS_OK
+                                                               : status_set(STATUS_FAILED, "%s: nobody reads on", path);
     double complex *values = malloc(count * sizeof *values);
     if (!values || !mat73_read(path, &stored, values))
         status =
