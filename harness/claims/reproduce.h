@@ -47,18 +47,4 @@ enum status sensitivity_study(const char *directory, const char *untimed, const 
    are, each table, figure and claim. Errors: of files; STATUS_INVALID where a claim is missing in claims.csv. */
 enum status pages_write(const char *from, const char *to, const struct claims *claims);
 
-/* Of each claim by its place in the list. */
-struct verdicts {
-    const struct claims *claims;
-    bool evaluated[CLAIMS_MAX];
-    bool noisy[CLAIMS_MAX]; /* as printed: undecided because a time lies within the noise of its run */
-    enum claim_verdict of[CLAIMS_MAX][SCHEMES];
-};
-
-/* A claim's evaluations by each scheme; a claim that names no scheme has the first alone. */
-void verdicts_add(struct verdicts *verdicts, int claim, const struct evaluation evaluations[SCHEMES]);
-
-/* The counts of the evaluated claims, by scheme. */
-void verdicts_print(FILE *stream, const struct verdicts *verdicts);
-
 #endif

@@ -116,14 +116,45 @@ static void claim_print(const struct claim *claim, const struct evaluation evalu
                claim_verdict_names[evaluations[scheme].verdict], evaluations[scheme].evidence);
 }
 
+/* Counts of the requested claims. */
+struct verdicts {
+    int of[SCHEMES][CLAIM_VERDICTS]; /* corrected: of claims that name a scheme alone */
+    int by_formula, noisy;           /* as printed: fail without a measurement; lie within the noise of their run */
+};
+
+static void verdicts_add(struct verdicts *verdicts, const struct claim *claim,
+                         const struct evaluation evaluations[SCHEMES])
+{
+    for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++)
+        verdicts->of[scheme][evaluations[scheme].verdict]++;
+    verdicts->by_formula += !claim->measures && evaluations->verdict == CLAIM_FAILS;
+    verdicts->noisy += evaluations->verdict == CLAIM_UNDECIDED && strstr(evaluations->evidence, ": within the noise");
+}
+
+static void verdicts_print(const struct verdicts *verdicts)
+{
+    printf("\nVerdicts\n");
+    for (enum scheme scheme = 0; scheme < SCHEMES; scheme++) {
+        int total = 0;
+        printf("  %-10s", scheme_names[scheme]);
+        for (int k = 0; k < CLAIM_VERDICTS; k++) {
+            printf("%s %d %s", k ? "," : "", verdicts->of[scheme][k], claim_verdict_names[k]);
+            total += verdicts->of[scheme][k];
+        }
+        printf(scheme ? " (of the %d that depend on LBF21's scheme).\n" : " (of %d).\n", total);
+    }
+    printf("As printed %d of those that do not hold fail by the papers' formulas and numbers alone;\n%d of those that "
+           "cannot be decided are times, or rest on them, that lie within the noise of their run.\n",
+           verdicts->by_formula, verdicts->noisy);
+}
+
 /* Write claims.csv: the requested claims, which are printed, too, and those that the folder can decide already. */
 static enum status claims_report(const char *directory, const struct selection *selection, struct measured *measured)
 {
     char path[4200];
     struct text_file file;
-    static struct verdicts verdicts;
+    struct verdicts verdicts = {.noisy = 0};
     int asked = 0;
-    verdicts = (struct verdicts){.claims = selection->claims};
     snprintf(path, sizeof path, "%s/claims.csv", directory);
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
@@ -145,11 +176,11 @@ static enum status claims_report(const char *directory, const struct selection *
         if (!selection->asked[n])
             continue;
         claim_print(claim, evaluations);
-        verdicts_add(&verdicts, n, evaluations);
+        verdicts_add(&verdicts, claim, evaluations);
         asked++;
     }
     if (asked)
-        verdicts_print(stdout, &verdicts);
+        verdicts_print(&verdicts);
     return text_file_close(&file, STATUS_OK);
 }
 
@@ -192,60 +223,4 @@ enum status reproduced_report(const char *directory, const struct selection *sel
     free(lines);
     measured_free(&measured);
     return status;
-}
-
-/* ---- counts of verdicts ---- */
-
-void verdicts_add(struct verdicts *verdicts, int claim, const struct evaluation evaluations[SCHEMES])
-{
-    verdicts->evaluated[claim] = true;
-    for (enum scheme scheme = 0; scheme < SCHEMES; scheme++)
-        verdicts->of[claim][scheme] = evaluations[scheme].verdict;
-    verdicts->noisy[claim] =
-        evaluations[0].verdict == CLAIM_UNDECIDED && strstr(evaluations[0].evidence, ": within the noise");
-}
-
-/* By one scheme; the corrected one counts only claims that name a scheme. Returns how many there are. */
-static int count(const struct verdicts *verdicts, enum scheme scheme, int counts[CLAIM_VERDICTS])
-{
-    int total = 0;
-    memset(counts, 0, CLAIM_VERDICTS * sizeof *counts);
-    for (int k = 0; k < verdicts->claims->count; k++) {
-        const struct claim *claim = &verdicts->claims->claims[k];
-        if (!verdicts->evaluated[k] || (scheme && !claim->by_scheme))
-            continue;
-        counts[verdicts->of[k][scheme]]++;
-        total++;
-    }
-    return total;
-}
-
-/* "N of those that do not hold by ... alone; N of those that cannot be decided are times within the noise of their
-   run." */
-static void reasons_write(FILE *stream, const struct verdicts *verdicts)
-{
-    int by_formula = 0, noisy = 0;
-    for (int k = 0; k < verdicts->claims->count; k++) {
-        by_formula +=
-            verdicts->evaluated[k] && !verdicts->claims->claims[k].measures && verdicts->of[k][0] == CLAIM_FAILS;
-        noisy += verdicts->evaluated[k] && verdicts->noisy[k];
-    }
-    fprintf(stream,
-            "As printed %d of those that do not hold fail by the papers' formulas and numbers alone;\n%d of those that "
-            "cannot be decided are times, or rest on them, that lie within the noise of their run.\n",
-            by_formula, noisy);
-}
-
-void verdicts_print(FILE *stream, const struct verdicts *verdicts)
-{
-    int counts[CLAIM_VERDICTS];
-    fputs("\nVerdicts\n", stream);
-    for (enum scheme scheme = 0; scheme < SCHEMES; scheme++) {
-        int total = count(verdicts, scheme, counts);
-        fprintf(stream, "  %-10s", scheme_names[scheme]);
-        for (int k = 0; k < CLAIM_VERDICTS; k++)
-            fprintf(stream, "%s %d %s", k ? "," : "", counts[k], claim_verdict_names[k]);
-        fprintf(stream, scheme ? " (of the %d that depend on LBF21's scheme).\n" : " (of %d).\n", total);
-    }
-    reasons_write(stream, verdicts);
 }
