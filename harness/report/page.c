@@ -96,15 +96,11 @@ void page_paragraph(struct page *page, const char *text)
     fputc('\n', page->stream);
 }
 
-void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles)
+void page_link(struct page *page, const char *id, const char *text)
 {
-    fputs("<nav>\n", page->stream);
-    for (int k = 0; k < count; k++) {
-        fprintf(page->stream, "  <a href=\"#%s\">", ids[k]);
-        page_text(page, titles[k]);
-        fputs("</a>\n", page->stream);
-    }
-    fputs("</nav>\n", page->stream);
+    fprintf(page->stream, "  <a href=\"#%s\">", id);
+    page_text(page, text);
+    fputs("</a>\n", page->stream);
 }
 
 /* --- Tables ---------------------------------------------------------------------------------------------------- */
@@ -257,19 +253,11 @@ static void link_write(struct page *page, const char *name)
     fputs("\">", page->stream);
 }
 
-void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts)
+void page_file(struct page *page, const char *name, const char *text)
 {
-    if (count == 0)
-        return;
-    fputs("<p>", page->stream);
-    page_text(page, before);
-    for (int k = 0; k < count; k++) {
-        fputs(k ? ", " : " ", page->stream);
-        link_write(page, names[k]);
-        page_text(page, texts[k]);
-        fputs("</a>", page->stream);
-    }
-    fputs("</p>\n", page->stream);
+    link_write(page, name);
+    page_text(page, text);
+    fputs("</a>", page->stream);
 }
 
 /* A picture of the type, inside a link where `link` is not NULL. */

@@ -39,8 +39,8 @@ void page_paragraph(struct page *page, const char *text);
 /* A part with a title, folded at first. */
 void page_part_begin(struct page *page, const char *title);
 void page_part_end(struct page *page);
-/* Links to headings. */
-void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles);
+/* A link to a heading, by its id. */
+void page_link(struct page *page, const char *id, const char *text);
 
 /* On a narrow screen each row becomes a block. `columns` stays borrowed until page_table_end. A row has a cell for
    each column, the first being its name; page_row_note writes one text in place of the other cells; without a name
@@ -56,8 +56,8 @@ enum status page_drawing(struct page *page, const char *path, const char *title)
 enum status page_image(struct page *page, const char *path, const char *caption);
 /* The JPEG file of the descriptor `small` in place of a PNG, with a link to the file `name` beside the page. */
 enum status page_thumbnail(struct page *page, int small, const char *name, const char *caption);
-/* A word, then links to files beside the page. */
-void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts);
+/* A link to a file beside the page. */
+void page_file(struct page *page, const char *name, const char *text);
 
 extern const char page_style[], page_script[];
 

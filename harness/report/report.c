@@ -140,34 +140,22 @@ static bool any_points(const struct folder *folder)
 /* Links to the sections, in their order. */
 static void contents_show(struct page *page, const struct folder *folder)
 {
-    const char *ids[REPORT_TABLES + 8], *titles[REPORT_TABLES + 8];
-    int count = 0;
+    fputs("<nav>\n", page->stream);
     if (any_points(folder)) {
-        ids[count] = "overview";
-        titles[count++] = "All scenes";
-        ids[count] = "fronts";
-        titles[count++] = "Pareto fronts";
-        ids[count] = "fastest";
-        titles[count++] = "The fastest";
+        page_link(page, "overview", "All scenes");
+        page_link(page, "fronts", "Pareto fronts");
+        page_link(page, "fastest", "The fastest");
     }
     for (int k = 0; k < REPORT_TABLES; k++)
-        if (folder->csvs[k].row_count > 0) {
-            ids[count] = report_tables[k].id;
-            titles[count++] = report_tables[k].title;
-        }
-    if (is_measured(folder)) {
-        ids[count] = "measurements";
-        titles[count++] = "Measurements";
-    }
-    if (folder->file_count) {
-        ids[count] = "figures";
-        titles[count++] = "Figures";
-    }
-    ids[count] = "images";
-    titles[count++] = "Slices and images";
-    ids[count] = "machine";
-    titles[count++] = "Machine";
-    page_contents(page, count, ids, titles);
+        if (folder->csvs[k].row_count > 0)
+            page_link(page, report_tables[k].id, report_tables[k].title);
+    if (is_measured(folder))
+        page_link(page, "measurements", "Measurements");
+    if (folder->file_count)
+        page_link(page, "figures", "Figures");
+    page_link(page, "images", "Slices and images");
+    page_link(page, "machine", "Machine");
+    fputs("</nav>\n", page->stream);
 }
 
 static enum status folder_show(struct page *page, const struct folder *folder)

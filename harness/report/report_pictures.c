@@ -205,17 +205,14 @@ static int thumbnails_choose(double share, int images, double *pixels)
 /* Images without room for a thumbnail, as links. */
 static void links_show(struct page *page, const struct picture *list, int count)
 {
-    const char **texts = calloc(2 * (size_t)count + 1, sizeof *texts), **names = texts + count;
     int shown = 0;
     struct stat info;
-    for (int k = 0; texts && k < count; k++)
+    for (int k = 0; k < count; k++)
         if (lstat(list[k].path, &info) == 0 && S_ISREG(info.st_mode)) {
-            names[shown] = strrchr(list[k].path, '/') + 1;
-            texts[shown++] = list[k].caption;
+            fputs(shown++ ? ", " : "<p>Beside this page: ", page->stream);
+            page_file(page, strrchr(list[k].path, '/') + 1, list[k].caption);
         }
-    if (texts)
-        page_files(page, "Beside this page:", shown, names, texts);
-    free(texts);
+    fputs(shown ? "</p>\n" : "", page->stream);
 }
 
 static enum status scene_show(struct page *page, struct picture *list, int list_count, double share,
