@@ -11,7 +11,6 @@
 
 #include "files/folder.h"
 #include "files/paths.h"
-#include "text/shown_text.h"
 #include "text/suggestion.h"
 #include "text/text_append.h"
 #include "imaging/spec.h"
@@ -19,6 +18,7 @@
 #include "papers/assumptions.h"
 #include "papers/rules.h"
 #include "scene/scene.h"
+#include "show/plot.h"
 #include "run/batch.h"
 #include "papers/phase.h"
 #include "advise/predicted.h"
@@ -212,10 +212,8 @@ static enum status selection_report(struct batch *batch, const struct selection 
         status = reproduced_report(directory, selection);
     if (status == STATUS_OK && measured)
         status = predicted_write(directory, NULL, 0, &predicted);
-    if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
-        shown_note(status_message());
-        batch->undrawn++;
-    }
+    if (predicted && status == STATUS_OK)
+        undrawn_note(predicted_draw(directory), &batch->undrawn);
     return status;
 }
 

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "text/shown_text.h"
 #include "run/batch.h"
 #include "advise/machine_rates.h"
 #include "advise/predicted.h"
@@ -71,10 +70,8 @@ static enum status sweep_finish(struct batch *batch, const struct scene *scenes,
     const char *directory = batch->directory;
     bool predicted = false;
     enum status status = predicted_write(directory, scenes, scene_count, &predicted);
-    if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
-        shown_note(status_message());
-        batch->undrawn++;
-    }
+    if (predicted && status == STATUS_OK)
+        undrawn_note(predicted_draw(directory), &batch->undrawn);
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv%s "
                "and plots.\n",

@@ -99,7 +99,7 @@ enum status picture_draw(const char *path, bool named, const struct image *image
                                           .targets = scene ? scene->targets : NULL,
                                           .target_count = scene ? scene->point_count : 0,
                                           .named = named};
-    return plot_image(path, data_path(DATA_PLOTS), &picture);
+    return plot_image(NULL, path, data_path(DATA_PLOTS), &picture);
 }
 
 enum status picture_differ(const char *path, const struct image *image, const struct image *reference,
@@ -110,7 +110,7 @@ enum status picture_differ(const char *path, const struct image *image, const st
     snprintf(title, sizeof title, "%.400s, and its difference to %.400s", names[0], names[1]);
     const struct image_picture picture = {
         .image = image, .reference = reference, .title = title, .footer = footer, .named = true};
-    return plot_image(path, data_path(DATA_PLOTS), &picture);
+    return plot_image(NULL, path, data_path(DATA_PLOTS), &picture);
 }
 
 struct choice_text origin_choice(const struct image_origin *origin)

@@ -9,7 +9,6 @@
 #include "echoes/echo_data.h"
 #include "files/folder.h"
 #include "files/paths.h"
-#include "text/shown_text.h"
 #include "files/text_file.h"
 #include "metrics/metrics.h"
 #include "results/provenance.h"
@@ -138,14 +137,6 @@ static void picture_name(const struct drawing *drawing, const char *id, const ch
     snprintf(path, size, "%s/figure-%s%s.png", drawing->directory, id, name);
 }
 
-static void report(const struct drawing *drawing, enum status status)
-{
-    if (status == STATUS_OK)
-        return;
-    shown_note(status_message());
-    ++*drawing->undrawn;
-}
-
 /* Is there an id, is it requested, and is its picture, or its last image, missing? */
 static bool wanted(const struct drawing *drawing, const char *id, bool asked, bool images)
 {
@@ -172,12 +163,13 @@ static void image_use(struct drawing *drawing, const struct session *session, co
     if (drawing->images) {
         picture_name(drawing, set->images, set->scenes[s].scene, set->methods[m].label, path, sizeof path);
         snprintf(title, sizeof title, "%s: %s, %s", set->title, scene->name, set->methods[m].label);
-        report(drawing, plot_image(path, data_path(DATA_PLOTS),
-                                   &(struct image_picture){.image = image,
-                                                           .title = title,
-                                                           .footer = drawing->footer,
-                                                           .targets = scene->targets,
-                                                           .target_count = scene->point_count}));
+        undrawn_note(plot_image(NULL, path, data_path(DATA_PLOTS),
+                                &(struct image_picture){.image = image,
+                                                        .title = title,
+                                                        .footer = drawing->footer,
+                                                        .targets = scene->targets,
+                                                        .target_count = scene->point_count}),
+                     drawing->undrawn);
     }
     for (int t = 0; t < set->scenes[s].targets && (drawing->slices || drawing->close); t++) {
         struct slice_line *line = &drawing->lines[first + t][m];
@@ -223,8 +215,7 @@ static enum status scene_use(struct drawing *drawing, int s, int first)
         status = session_image(&session, &spec, &image);
         if (status == STATUS_OK)
             image_use(drawing, &session, &image, s, m, first);
-        else
-            report(drawing, status);
+        undrawn_note(status, drawing->undrawn);
         status = STATUS_OK;
         image_free(&image);
         spec_free(&spec);
@@ -264,9 +255,9 @@ static void slices_draw(const struct drawing *drawing, const char *id, double mo
                                            .line_count = drawing->method_count,
                                            .panel_titles = titles,
                                            .lines = shown};
-    report(drawing, plot_slices(path, data_path(DATA_PLOTS), &picture));
+    undrawn_note(plot_slices(NULL, path, data_path(DATA_PLOTS), &picture), drawing->undrawn);
     plot_path_svg(path);
-    report(drawing, plot_slices(path, data_path(DATA_PLOTS), &picture));
+    undrawn_note(plot_slices(NULL, path, data_path(DATA_PLOTS), &picture), drawing->undrawn);
 }
 
 static enum status set_draw(struct drawing *drawing)
@@ -323,7 +314,7 @@ static enum status layout_draw(struct drawing *drawing)
     }
     status = text_file_close(&file, status);
     if (status == STATUS_OK)
-        report(drawing, plot_csv(picture, data_path(DATA_PLOTS), "layout.gp", csv, drawing->footer));
+        undrawn_note(plot_csv(picture, data_path(DATA_PLOTS), "layout.gp", csv, drawing->footer), drawing->undrawn);
     return status;
 }
 
@@ -340,11 +331,7 @@ static const struct {
 
 static bool is_drawn(const char *directory, enum step step, char path[4200])
 {
-    snprintf(path, 4200,
-             "%s/figure-"
-             "pf05_f5_echoes"
-             "-%s.png",
-             directory, steps[step].name);
+    snprintf(path, 4200, "%s/figure-pf05_f5_echoes-%s.png", directory, steps[step].name);
     return place_is_file(path);
 }
 
@@ -368,12 +355,9 @@ static enum status records_draw(const struct acquisition *a, const double comple
         for (int p = 0; p < a->pings; p++)
             pixels[(size_t)n * (size_t)a->pings + (size_t)p] = records[(size_t)p * (size_t)a->samples + (size_t)n];
     provenance_line(footer);
-    if (plot_image(path, data_path(DATA_PLOTS),
-                   &(struct image_picture){.image = &image, .title = title, .footer = footer})
-        != STATUS_OK) {
-        shown_note(status_message());
-        ++*undrawn;
-    }
+    undrawn_note(plot_image(NULL, path, data_path(DATA_PLOTS),
+                            &(struct image_picture){.image = &image, .title = title, .footer = footer}),
+                 undrawn);
     image_free(&image);
     return STATUS_OK;
 }

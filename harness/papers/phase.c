@@ -214,13 +214,14 @@ static enum status study_draw(const struct study *study, const struct csv *publi
     snprintf(title, sizeof title, "%.300s: phase error of receiver %d (d = %g m)", study_title(study),
              study->receiver[receiver], study->offset[receiver]);
     provenance_line(footer);
-    return plot_phase(path, data_path(DATA_PLOTS),
-                      &(struct slices_picture){.title = title,
-                                               .footer = footer,
-                                               .panel_count = RANGES,
-                                               .line_count = FORMULAS - 1,
-                                               .panel_titles = panels,
-                                               .lines = lines[0]});
+    return plot_slices(NULL, path, data_path(DATA_PLOTS),
+                       &(struct slices_picture){.title = title,
+                                                .footer = footer,
+                                                .panel_count = RANGES,
+                                                .line_count = FORMULAS - 1,
+                                                .panel_titles = panels,
+                                                .lines = lines[0],
+                                                .phase = true});
 }
 
 void phase_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)

@@ -173,7 +173,7 @@ static void stay_end(struct batch *batch, struct stay *stay, bool drawn)
     if (drawn && batch->details)
         pictures_draw(&stay->visit.pictures);
     batch->drawn_s += seconds_now() - begin;
-    batch->undrawn += stay->visit.pictures.undrawn;
+    batch->undrawn += stay->visit.pictures.queue.undrawn;
     session_spent(&stay->visit.session, &batch->spent);
     visit_close(&stay->visit);
 }

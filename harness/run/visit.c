@@ -156,7 +156,7 @@ void visit_redraw(struct visit *visit, int index, const struct measurement *row)
         draw(visit, index, &image);
     } else {
         fprintf(stderr, "sasbench: %s with %s is not drawn: %s\n", row->scene, row->algorithm, status_message());
-        visit->pictures.undrawn++;
+        visit->pictures.queue.undrawn++;
     }
     image_free(&image);
 }

@@ -7,7 +7,6 @@
 
 #include "metrics/metrics.h"
 #include "files/folder.h"
-#include "text/shown_text.h"
 #include "files/paths.h"
 
 /* The slices' path with a label of NULL. */
@@ -25,19 +24,11 @@ bool picture_exists(const char *directory, const char *scene, const char *label)
     return place_is_file(path);
 }
 
-/* A picture that cannot be drawn is reported; the measurement does not fail. */
-static void tell(void *to)
-{
-    struct pictures *pictures = to;
-    shown_note(status_message());
-    pictures->undrawn++;
-}
-
 enum status pictures_begin(const char *directory, const char *footer, const struct scene *scene,
                            const struct image *exact, int spec_count, struct pictures *pictures)
 {
     char path[4096];
-    *pictures = (struct pictures){directory, footer, scene, exact, spec_count, NULL, 0, {NULL, 0}};
+    *pictures = (struct pictures){directory, footer, scene, exact, spec_count, NULL, {NULL, 0, 0}};
     pictures->lines = calloc((size_t)scene->point_count * (size_t)spec_count + 1, sizeof *pictures->lines);
     if (!pictures->lines)
         return status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
@@ -79,10 +70,7 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
                                           .footer = pictures->footer,
                                           .targets = scene->targets,
                                           .target_count = scene->point_count};
-    if (pictures->queue.count == PLOT_QUEUE_MOST)
-        plot_queue_draw(&pictures->queue, tell, pictures);
-    if (plot_image_later(&pictures->queue, path, data_path(DATA_PLOTS), &picture) != STATUS_OK)
-        tell(pictures);
+    (void)plot_image(&pictures->queue, path, data_path(DATA_PLOTS), &picture); /* the measurement does not fail */
     for (int t = 0; t < scene->point_count; t++) {
         struct slice_line *line = &pictures->lines[t * pictures->spec_count + index];
         line->label = strdup(label);
@@ -132,14 +120,11 @@ void pictures_draw(struct pictures *pictures)
                                                .panel_titles = titles,
                                                .lines = lines};
         for (int svg = 0; svg < 2; svg++) { /* papers use curves, too */
-            if (pictures->queue.count == PLOT_QUEUE_MOST)
-                plot_queue_draw(&pictures->queue, tell, pictures);
-            if (plot_slices_later(&pictures->queue, path, data_path(DATA_PLOTS), &picture) != STATUS_OK)
-                tell(pictures);
+            (void)plot_slices(&pictures->queue, path, data_path(DATA_PLOTS), &picture);
             plot_path_svg(path);
         }
     }
-    plot_queue_draw(&pictures->queue, tell, pictures);
+    plot_queue_draw(&pictures->queue);
     free(lines);
     free(texts);
     free(titles);

@@ -13,7 +13,6 @@ struct pictures {
     const struct image *exact; /* without patches: no exact image */
     int spec_count;
     struct slice_line *lines; /* [point_count][spec_count]; without a label: no image */
-    int undrawn;              /* pictures that could not be drawn */
     struct plot_queue queue;
 };
 

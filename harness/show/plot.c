@@ -51,13 +51,13 @@ static void line_write(FILE *file, const struct slice_line *line, int index, dou
     fprintf(file, "END\n");
 }
 
-/* `slices`: cut them to their extent. */
-static void lines_write(const struct plot *plot, const struct slices_picture *picture, bool slices)
+/* Slices are cut to their extent. */
+static void lines_write(const struct plot *plot, const struct slices_picture *picture)
 {
     const int shown = picture->panel_count < PANELS_MAX ? picture->panel_count : PANELS_MAX;
     const int count = shown * picture->line_count;
     const struct slice_line *lines = picture->lines;
-    const double extent = slices ? slices_extent(lines, count) : INFINITY;
+    const double extent = picture->phase ? INFINITY : slices_extent(lines, count);
     char title[600];
     int length = snprintf(title, sizeof title, "%.500s", picture->title);
     if (shown < picture->panel_count)
@@ -76,37 +76,21 @@ static void lines_write(const struct plot *plot, const struct slices_picture *pi
         plot_array_write(plot->preamble, "algorithms", l, lines[l].algorithm ? lines[l].algorithm : lines[l].label);
         fprintf(plot->preamble, "printed[%d] = %.9g\n", l + 1, lines[l].printed);
     }
-    if (slices)
+    if (!picture->phase)
         extent_write(plot->preamble, lines, count, extent);
     plot_array(plot->preamble, "data", count);
     for (int b = 0; b < count; b++)
         line_write(plot->preamble, &lines[b], b, extent);
 }
 
-static enum status lines_draw(struct plot_queue *queue, const char *path, const char *plots_directory, bool slices,
-                              const struct slices_picture *picture)
+enum status plot_slices(struct plot_queue *queue, const char *path, const char *plots_directory,
+                        const struct slices_picture *picture)
 {
     struct plot plot;
     enum status status = plot_begin(&plot, path, false);
     if (status == STATUS_OK)
-        lines_write(&plot, picture, slices);
-    return plot_finish(&plot, status, queue, plots_directory, slices ? "slices.gp" : "phase.gp");
-}
-
-enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture)
-{
-    return lines_draw(NULL, path, plots_directory, true, picture);
-}
-
-enum status plot_slices_later(struct plot_queue *queue, const char *path, const char *plots_directory,
-                              const struct slices_picture *picture)
-{
-    return lines_draw(queue, path, plots_directory, true, picture);
-}
-
-enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture)
-{
-    return lines_draw(NULL, path, plots_directory, false, picture);
+        lines_write(&plot, picture);
+    return plot_finish(&plot, status, queue, plots_directory, picture->phase ? "phase.gp" : "slices.gp");
 }
 
 enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv,

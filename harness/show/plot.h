@@ -18,11 +18,12 @@ struct image_picture {
     int target_count;
     bool named; /* the user gave the path: follow a link there */
 };
-enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture);
-/* The same, drawn later (plot_script.h): errors until the data are written are returned here, the rest there. */
+/* With a queue (plot_script.h) the picture is drawn later; NULL: now. */
 struct plot_queue;
-enum status plot_image_later(struct plot_queue *queue, const char *path, const char *plots_directory,
-                             const struct image_picture *picture);
+enum status plot_image(struct plot_queue *queue, const char *path, const char *plots_directory,
+                       const struct image_picture *picture);
+/* Note on standard error a picture that was not drawn, by the status of its making, and count it. */
+void undrawn_note(enum status status, int *undrawn);
 
 /* Seconds that gnuplot may take for a picture. After a longer one nothing more is drawn. */
 extern double plot_seconds_most;
@@ -41,12 +42,10 @@ struct slices_picture {
     int panel_count, line_count;
     const char *const *panel_titles; /* [panel_count] */
     const struct slice_line *lines;  /* [panel_count][line_count] */
+    bool phase;                      /* phase errors: position in cycles a metre, `power_db` in radians */
 };
-enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture);
-enum status plot_slices_later(struct plot_queue *queue, const char *path, const char *plots_directory,
-                              const struct slices_picture *picture);
-/* The same for phase errors: position in cycles a metre, `power_db` in radians. */
-enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture);
+enum status plot_slices(struct plot_queue *queue, const char *path, const char *plots_directory,
+                        const struct slices_picture *picture);
 
 /* Of the rows in DIR/measurements.csv, as PNG and SVG: error against time, DIR/SCENE-error_time, of every scene, and
    all of them side by side, DIR/overview; or of the one `scene` of a sweep alone, with DIR/SCENE-upsampling where

@@ -265,23 +265,12 @@ static enum status image_write(struct plot *plot, const struct image_picture *pi
     return status;
 }
 
-static enum status image_draw(struct plot_queue *queue, const char *path, const char *plots_directory,
-                              const struct image_picture *picture)
+enum status plot_image(struct plot_queue *queue, const char *path, const char *plots_directory,
+                       const struct image_picture *picture)
 {
     struct plot plot;
     enum status status = plot_begin(&plot, path, picture->named);
     if (status == STATUS_OK)
         status = image_write(&plot, picture);
     return plot_finish(&plot, status, queue, plots_directory, image_script);
-}
-
-enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture)
-{
-    return image_draw(NULL, path, plots_directory, picture);
-}
-
-enum status plot_image_later(struct plot_queue *queue, const char *path, const char *plots_directory,
-                             const struct image_picture *picture)
-{
-    return image_draw(queue, path, plots_directory, picture);
 }

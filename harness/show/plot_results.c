@@ -5,7 +5,6 @@
 
 #include "files/folder.h"
 #include "files/paths.h"
-#include "text/shown_text.h"
 #include "text/text_append.h"
 #include "show/chart.h"
 #include "show/plot.h"
@@ -16,14 +15,7 @@ struct drawer {
     const char *directory;
     char footer[600];
     struct plot_queue queue;
-    int undrawn;
 };
-
-static void report(void *to)
-{
-    shown_note(status_message());
-    ((struct drawer *)to)->undrawn++;
-}
 
 /* --- What the scripts share ------------------------------------------------------------------------------------- */
 
@@ -83,15 +75,12 @@ static void draw(struct drawer *drawer, const char *scene, const char *name, con
         place_clear(path);
         if (!of)
             continue;
-        if (drawer->queue.count == PLOT_QUEUE_MOST)
-            plot_queue_draw(&drawer->queue, report, drawer);
         enum status status = plot_begin(&plot, path, false);
         if (status == STATUS_OK) {
             plot_variable(plot.preamble, "footer", drawer->footer);
             status = write(plot.preamble, of);
         }
-        if (plot_finish(&plot, status, &drawer->queue, data_path(DATA_PLOTS), script) != STATUS_OK)
-            report(drawer);
+        (void)plot_finish(&plot, status, &drawer->queue, data_path(DATA_PLOTS), script);
     }
 }
 
@@ -357,8 +346,8 @@ enum status plot_results(const char *directory, const char *scene, int *undrawn)
     }
     if (status == STATUS_OK && !scene)
         status = overview_draw(&drawer, &results, points, count);
-    plot_queue_draw(&drawer.queue, report, &drawer);
-    *undrawn += drawer.undrawn;
+    plot_queue_draw(&drawer.queue);
+    *undrawn += drawer.queue.undrawn;
     for (int s = 0; s < count && points; s++)
         points_free(&points[s]);
     free(points);

@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "files/text_file.h"
+#include "text/shown_text.h"
 #include "contract/algorithm.h"
 #include "show/plot.h"
 
@@ -331,20 +332,34 @@ static enum status add(struct plot_queue *queue, struct plot *plot, const char *
     struct queued_plot *queued = &queue->list[queue->count++];
     *queued = (struct queued_plot){.plot = *plot};
     queued->plot.path = path;
+    if (queue->count == PLOT_QUEUE_MOST)
+        plot_queue_draw(queue);
     return STATUS_OK;
 }
 
 enum status plot_finish(struct plot *plot, enum status status, struct plot_queue *queue, const char *plots_directory,
                         const char *script)
 {
-    if (status == STATUS_OK && queue)
-        return add(queue, plot, plots_directory, script);
-    if (status == STATUS_OK)
-        status = plot_run(plot, plots_directory, script);
-    if (status == STATUS_OK)
-        status = plot_place(plot);
-    plot_end(plot);
+    if (status == STATUS_OK && queue) {
+        status = add(queue, plot, plots_directory, script);
+    } else {
+        if (status == STATUS_OK)
+            status = plot_run(plot, plots_directory, script);
+        if (status == STATUS_OK)
+            status = plot_place(plot);
+        plot_end(plot);
+    }
+    if (queue)
+        undrawn_note(status, &queue->undrawn);
     return status;
+}
+
+void undrawn_note(enum status status, int *undrawn)
+{
+    if (status == STATUS_OK)
+        return;
+    shown_note(status_message());
+    ++*undrawn;
 }
 
 /* One step of a picture: start it, check whether it is ready, put it into its place. */
@@ -363,7 +378,7 @@ static enum status advance(struct queued_plot *queued)
     return status;
 }
 
-void plot_queue_draw(struct plot_queue *queue, void (*failed)(void *to), void *to)
+void plot_queue_draw(struct plot_queue *queue)
 {
     /* The last first: a scene's slices take longest. */
     const int threads = omp_get_max_threads(), most = threads < PROCESSES_MOST ? threads : PROCESSES_MOST;
@@ -371,8 +386,8 @@ void plot_queue_draw(struct plot_queue *queue, void (*failed)(void *to), void *t
         int running = 0;
         done = 0;
         for (int k = queue->count - 1; k >= 0 && running < most; k--) {
-            if (!queue->list[k].done && advance(&queue->list[k]) != STATUS_OK)
-                failed(to);
+            if (!queue->list[k].done)
+                undrawn_note(advance(&queue->list[k]), &queue->undrawn);
             running += !queue->list[k].done;
         }
         for (int k = 0; k < queue->count; k++)
@@ -388,5 +403,6 @@ void plot_queue_free(struct plot_queue *queue)
     for (int k = 0; k < queue->count; k++)
         queued_end(&queue->list[k]);
     free(queue->list);
-    *queue = (struct plot_queue){NULL, 0};
+    queue->list = NULL;
+    queue->count = 0;
 }

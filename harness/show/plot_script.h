@@ -56,17 +56,16 @@ enum { PLOT_QUEUE_MOST = 48 };
 /* Accepts zeroes; emptied by plot_queue_draw or plot_queue_free. */
 struct plot_queue {
     struct queued_plot *list; /* [count] */
-    int count;
+    int count, undrawn;       /* undrawn: pictures so far that failed, each of which is noted (undrawn_note) */
 };
 
 /* End a plot whose data and variables were written with `status`: without a queue it is drawn, else the queue takes
-   it over and draws it later; `plots_directory` and `script` are borrowed until then. The queue must hold fewer than
-   PLOT_QUEUE_MOST. Errors: `status`; as plot_draw; STATUS_FAILED for a full disk or no memory. */
+   it over and draws it later, at the latest when it has PLOT_QUEUE_MOST; `plots_directory` and `script` are borrowed
+   until then. Errors, which a queue counts: `status`; as plot_run; STATUS_FAILED for a full disk or no memory. */
 enum status plot_finish(struct plot *plot, enum status status, struct plot_queue *queue, const char *plots_directory,
                         const char *script);
-/* Draw all, as many at a time as OpenMP has threads. `failed` is called for each failed picture, with the reason in
-   status_message(). */
-void plot_queue_draw(struct plot_queue *queue, void (*failed)(void *to), void *to);
+/* Draw all, as many at a time as OpenMP has threads. */
+void plot_queue_draw(struct plot_queue *queue);
 /* Drop what is not drawn. */
 void plot_queue_free(struct plot_queue *queue);
 

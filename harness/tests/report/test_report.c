@@ -310,8 +310,8 @@ static void test_images_are_thumbnails(void **state)
     const struct slice_line line = {"bp_nearest", places, powers, 3, NULL, NULL, 0};
     const char *const titles[] = {"one"};
     record_rows(&row, 1);
-    assert_int_equal(plot_slices(path_of("a-slices.png"), SASBENCH_ROOT "/plots",
-                                 &(struct slices_picture){"a", NULL, 1, 1, titles, &line}),
+    assert_int_equal(plot_slices(NULL, path_of("a-slices.png"), SASBENCH_ROOT "/plots",
+                                 &(struct slices_picture){"a", NULL, 1, 1, titles, &line, false}),
                      STATUS_OK);
     assert_int_equal(report_write(folder), STATUS_OK);
     char *html = support_read("report.html");
@@ -341,9 +341,9 @@ static void test_images_beyond_are_links(void **state)
         snprintf(name, sizeof name, "bp_linear:beta=%d.png", k);
         picture_path(folder, "a", name, path, sizeof path);
         if (k == 0)
-            assert_int_equal(
-                plot_slices(path, SASBENCH_ROOT "/plots", &(struct slices_picture){"a", NULL, 1, 1, titles, &line}),
-                STATUS_OK);
+            assert_int_equal(plot_slices(NULL, path, SASBENCH_ROOT "/plots",
+                                         &(struct slices_picture){"a", NULL, 1, 1, titles, &line, false}),
+                             STATUS_OK);
         else
             assert_int_equal(link(path_of("a-bp_linear_beta_0.png"), path), 0);
     }

@@ -52,13 +52,13 @@ static void image_is_drawn(void **state)
                              {0, 0.5, 520, -10000, 5000, 5}};
     struct image image;
     assert_int_equal(image_allocate(4, patches, PRECISION_FLOAT, &image), STATUS_OK);
-    assert_drawn(plot_image(path_of("it's.png"), real_plots,
+    assert_drawn(plot_image(NULL, path_of("it's.png"), real_plots,
                             &(struct image_picture){.image = &image, .title = "all zero, 'quoted' \"twice\"\n\\n $x"}));
     assert_png("it's.png");
     ((float complex *)image.pixels[0])[77] = 3;
     ((float complex *)image.pixels[1])[0] = NAN;
-    assert_drawn(
-        plot_image(path_of("it's.png"), real_plots, &(struct image_picture){.image = &image, .title = "with NAN"}));
+    assert_drawn(plot_image(NULL, path_of("it's.png"), real_plots,
+                            &(struct image_picture){.image = &image, .title = "with NAN"}));
     assert_png("it's.png");
     image_free(&image);
     assert_nothing_left();
@@ -91,7 +91,7 @@ static void image_data_are_right(void **state)
     ((double complex *)image.pixels[0])[2 * 2700 + 301] = 3 + 4 * I;
     ((double complex *)image.pixels[0])[5] = INFINITY;
     ((double complex *)image.pixels[8])[0] = 50;
-    assert_drawn(plot_image(path_of("variables.svg"), folder,
+    assert_drawn(plot_image(NULL, path_of("variables.svg"), folder,
                             &(struct image_picture){.image = &image, .title = "it's\ta_title"}));
     assert_text("variables.svg", "it's a_title (1 pixel not finite) (first 8 of 9 patches)\n8\n"
                                  "2700 1.000 2698.000 10.000 11.000\n"
@@ -114,9 +114,9 @@ static void far_pixels_are_told_apart(void **state)
     assert_int_equal(image_allocate(1, &patch, PRECISION_DOUBLE, &image), STATUS_OK);
     ((double complex *)image.pixels[0])[26 * 101 + 51] = 1;
     const struct image_picture picture = {.image = &image, .title = "a"};
-    assert_drawn(plot_image(path_of("variables.svg"), folder, &picture));
+    assert_drawn(plot_image(NULL, path_of("variables.svg"), folder, &picture));
     assert_text("variables.svg", "brightest at 4000004.020 500020.020\n</svg>\n");
-    assert_drawn(plot_image(path_of("far.svg"), real_plots, &picture));
+    assert_drawn(plot_image(NULL, path_of("far.svg"), real_plots, &picture));
     char *whole = support_read("far.svg");
     assert_true(whole && strstr(whole, "4000003.5") && strstr(whole, "500020.5"));
     free(whole);
@@ -154,12 +154,12 @@ static void differences_curves_and_targets(void **state)
                                           .range_db = 40,
                                           .targets = targets,
                                           .target_count = 2};
-    assert_drawn(plot_image(path_of("variables.svg"), folder, &picture));
+    assert_drawn(plot_image(NULL, path_of("variables.svg"), folder, &picture));
     /* 1 of 10: the difference in the second patch is the largest, -20 dB; that in the first 0.5 of 10. */
     assert_text(
         "variables.svg",
         "rows   columns   image 1 2 0\n1 40 -20\n-26.02\n21.00 -20.01\n0 0 1   from here\nT2   102.0\n</svg>\n");
-    assert_drawn(plot_image(path_of("all.png"), real_plots, &picture));
+    assert_drawn(plot_image(NULL, path_of("all.png"), real_plots, &picture));
     assert_png("all.png");
     image_free(&image);
     image_free(&exact);
@@ -180,13 +180,13 @@ static void slices_are_drawn(void **state)
             l % 2 ? "bp_'sinc'" : "reference", position, power, 101, l == 3 ? power : NULL, NULL, 0};
     lines[1].count = 0;
     const char *titles[] = {"target 0", "target_1"};
-    assert_drawn(plot_slices(path_of("slices.png"), real_plots,
-                             &(struct slices_picture){"two targets", "here", 2, 2, titles, lines}));
+    assert_drawn(plot_slices(NULL, path_of("slices.png"), real_plots,
+                             &(struct slices_picture){"two targets", "here", 2, 2, titles, lines, false}));
     assert_png("slices.png");
     for (int l = 0; l < 4; l++)
         lines[l].count = 0;
-    assert_drawn(
-        plot_slices(path_of("slices.png"), real_plots, &(struct slices_picture){"nothing", NULL, 2, 2, titles, lines}));
+    assert_drawn(plot_slices(NULL, path_of("slices.png"), real_plots,
+                             &(struct slices_picture){"nothing", NULL, 2, 2, titles, lines, false}));
     assert_png("slices.png");
     assert_nothing_left();
 }
@@ -197,8 +197,8 @@ static void phase_errors_are_drawn(void **state)
     double place[] = {-2, 0, 1}, error[] = {0.1, 0, 0.2};
     const struct slice_line line = {"LBF", place, error, 3, NULL, "rma_lbf", 0.15};
     const char *panel = "r = 50 m";
-    assert_drawn(
-        plot_phase(path_of("phase.png"), real_plots, &(struct slices_picture){"title", "here", 1, 1, &panel, &line}));
+    assert_drawn(plot_slices(NULL, path_of("phase.png"), real_plots,
+                             &(struct slices_picture){"title", "here", 1, 1, &panel, &line, true}));
     assert_png("phase.png");
 }
 
@@ -212,8 +212,8 @@ static void assert_style_prints(const char *statements, const char *expected)
              "plots = %s; name = output; format = 'svg'; load plots.'/style.gp'; set print name\n%s\nprint '</svg>'\n",
              gnuplot_text(real_plots), statements);
     support_write("slices.gp", script);
-    assert_drawn(
-        plot_slices(path_of("variables.svg"), folder, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
+    assert_drawn(plot_slices(NULL, path_of("variables.svg"), folder,
+                             &(struct slices_picture){"title", NULL, 1, 1, &panel, &line, false}));
     snprintf(whole, sizeof whole, "%s\n</svg>\n", expected);
     assert_text("variables.svg", whole);
 }
@@ -271,8 +271,8 @@ static void slice_data_are_right(void **state)
         lines[l] = (struct slice_line){l % 2 ? "b" : "a",          position, power[l], l == 1 ? 0 : 6,
                                        l == 3 ? difference : NULL, NULL,     0};
     const char *titles[] = {"t0", "t1"};
-    assert_drawn(
-        plot_slices(path_of("variables.svg"), folder, &(struct slices_picture){"title", NULL, 2, 2, titles, lines}));
+    assert_drawn(plot_slices(NULL, path_of("variables.svg"), folder,
+                             &(struct slices_picture){"title", NULL, 2, 2, titles, lines, false}));
     assert_text("variables.svg",
                 "title 2 2 t1 b\n1 0.575 0 -40\n-200.0 5\n5\n7.00 -1.00\n0\n-\n5\n7.00 -2.00\n5\n7.00 -3.00\n"
                 "</svg>\n");
@@ -286,16 +286,17 @@ static void failures_are_told(void **state)
     struct image image;
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
 
-    assert_int_equal(
-        plot_image(path_of("no/such/folder.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"}),
-        STATUS_INVALID);
+    assert_int_equal(plot_image(NULL, path_of("no/such/folder.png"), real_plots,
+                                &(struct image_picture){.image = &image, .title = "a"}),
+                     STATUS_INVALID);
     assert_non_null(strstr(status_message(), "no/such/folder.png"));
 
     /* A failing script leaves the old picture alone. */
     support_write("image.gp", "set print output; print 'half'; nonsense here\n");
     support_write("old.png", "old");
-    assert_int_equal(plot_image(path_of("old.png"), folder, &(struct image_picture){.image = &image, .title = "a"}),
-                     STATUS_FAILED);
+    assert_int_equal(
+        plot_image(NULL, path_of("old.png"), folder, &(struct image_picture){.image = &image, .title = "a"}),
+        STATUS_FAILED);
     assert_non_null(strstr(status_message(), "old.png"));
     assert_non_null(strstr(status_message(), "nonsense"));
     assert_non_null(strstr(status_message(), ": line 1: invalid command"));
@@ -304,7 +305,7 @@ static void failures_are_told(void **state)
     char *paths = strdup(getenv("PATH"));
     setenv("PATH", folder, 1);
     enum status status =
-        plot_image(path_of("old.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"});
+        plot_image(NULL, path_of("old.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"});
     setenv("PATH", paths, 1);
     free(paths);
     assert_int_equal(status, STATUS_FAILED);
@@ -335,7 +336,7 @@ static void cut_pictures_are_told(void **state)
         support_write("image.gp", cuts[k].script);
         support_write(cuts[k].name, "old");
         assert_int_equal(
-            plot_image(path_of(cuts[k].name), folder, &(struct image_picture){.image = &image, .title = "a"}),
+            plot_image(NULL, path_of(cuts[k].name), folder, &(struct image_picture){.image = &image, .title = "a"}),
             cuts[k].whole ? STATUS_OK : STATUS_FAILED);
         assert_text(cuts[k].name, cuts[k].whole ? "<svg>all of it to its end</svg>\n\n\n" : "old");
         if (!cuts[k].whole) {
@@ -347,26 +348,13 @@ static void cut_pictures_are_told(void **state)
     assert_nothing_left();
 }
 
-struct told {
-    int count;
-    char message[600];
-};
-
-static void tell(void *to)
-{
-    struct told *told = to;
-    told->count++;
-    snprintf(told->message, sizeof told->message, "%s", status_message());
-}
-
 /* Pictures that wait are drawn together, from what they were added with; one that fails leaves the others alone. */
 static void queued_pictures_are_drawn(void **state)
 {
     (void)state;
     struct grid patch = {0, 1, 4, 10, 1, 4};
     struct image image;
-    struct plot_queue queue = {NULL, 0};
-    struct told told = {0, ""};
+    struct plot_queue queue = {NULL, 0, 0};
     double position[] = {-1, 0, 1}, power[] = {-20, 0, -20};
     struct slice_line line = {.label = "a", .position_m = position, .power_db = power, .count = 3};
     const char *panel = "t0";
@@ -376,19 +364,19 @@ static void queued_pictures_are_drawn(void **state)
     const struct image_picture picture = {.image = &image, .title = "a"};
     for (int k = 0; k < 5; k++) {
         snprintf(name, sizeof name, "q%d.png", k);
-        assert_drawn(plot_image_later(&queue, path_of(name), k == 2 ? folder : real_plots, &picture));
+        assert_drawn(plot_image(&queue, path_of(name), k == 2 ? folder : real_plots, &picture));
         assert_int_not_equal(access(path_of(name), F_OK), 0);
     }
-    assert_drawn(plot_slices_later(&queue, path_of("s.png"), real_plots,
-                                   &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
+    assert_drawn(plot_slices(&queue, path_of("s.png"), real_plots,
+                             &(struct slices_picture){"title", NULL, 1, 1, &panel, &line, false}));
     image_free(&image);
     line.count = 0;
     assert_int_equal(queue.count, 6);
-    plot_queue_draw(&queue, tell, &told);
+    plot_queue_draw(&queue);
     assert_int_equal(queue.count, 0);
-    assert_int_equal(told.count, 1);
-    assert_non_null(strstr(told.message, "q2.png"));
-    assert_non_null(strstr(told.message, "nonsense"));
+    assert_int_equal(queue.undrawn, 1);
+    assert_non_null(strstr(status_message(), "q2.png"));
+    assert_non_null(strstr(status_message(), "nonsense"));
     for (int k = 0; k < 5; k++) {
         snprintf(name, sizeof name, "q%d.png", k);
         if (k == 2)
@@ -401,8 +389,8 @@ static void queued_pictures_are_drawn(void **state)
 
     /* What is dropped leaves nothing, either. */
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
-    assert_drawn(plot_image_later(&queue, path_of("dropped.png"), real_plots,
-                                  &(struct image_picture){.image = &image, .title = "a"}));
+    assert_drawn(
+        plot_image(&queue, path_of("dropped.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"}));
     plot_queue_free(&queue);
     assert_int_not_equal(access(path_of("dropped.png"), F_OK), 0);
     image_free(&image);
@@ -418,12 +406,13 @@ static void hanging_gnuplot_is_stopped(void **state)
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
     support_write("image.gp", "pause 1000\n");
     plot_seconds_most = 0.2;
-    assert_int_equal(plot_image(path_of("a.png"), folder, &(struct image_picture){.image = &image, .title = "a"}),
+    assert_int_equal(plot_image(NULL, path_of("a.png"), folder, &(struct image_picture){.image = &image, .title = "a"}),
                      STATUS_FAILED);
     assert_non_null(strstr(status_message(), "did not end within 0.2 s"));
     plot_seconds_most = 60;
-    assert_int_equal(plot_image(path_of("a.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"}),
-                     STATUS_FAILED);
+    assert_int_equal(
+        plot_image(NULL, path_of("a.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"}),
+        STATUS_FAILED);
     assert_non_null(strstr(status_message(), "did not end on a picture before"));
     image_free(&image);
     assert_nothing_left();
