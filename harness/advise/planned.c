@@ -213,11 +213,6 @@ static void spec_format(const struct candidate *candidate, int precision, char *
              precision == PRECISION_FLOAT ? "" : "precision=double");
 }
 
-static bool is_slower(const struct candidate *candidate)
-{
-    return strcmp(plan_verdict_names[candidate->verdict], "slower") == 0;
-}
-
 /* "rma" of rma_delay. */
 static bool family_same(const struct candidate *a, const struct candidate *b)
 {
@@ -233,7 +228,7 @@ static const struct candidate *runner_up(const struct choice *choice, const stru
         const struct candidate *c = &choice->list[k];
         if (!family_same(c, of) || (choice->found && c->algorithm == choice->list[0].algorithm))
             continue;
-        if (is_slower(c))
+        if (c->verdict == CANDIDATE_SLOWER)
             return c;
         if (!best || c->error < best->error)
             best = c;
@@ -246,7 +241,7 @@ static void runner_up_print(FILE *stream, const struct candidate *c, const struc
     char text[700], name[CANDIDATE_NAME];
     const char *reason = reason_of(c), *cure = strstr(reason, " (cure: ");
     candidate_name(c, name);
-    if (is_slower(c) && c->error < INFINITY)
+    if (c->verdict == CANDIDATE_SLOWER && c->error < INFINITY)
         snprintf(text, sizeof text, "%s: error %.1e, %s, %.2f times as long", name, c->error,
                  cell_time(c->seconds).text, c->seconds / chosen->seconds);
     else

@@ -50,13 +50,12 @@ static enum status scene_check(const struct formula *formula, const struct call 
 static enum status spec_check(struct formula *formula, struct call *call, int k)
 {
     struct spec spec;
-    char message[400], text[sizeof call->text[0]];
+    char text[sizeof call->text[0]];
     formula->by_scheme |= scheme_spec(formula->scheme, assumed_text(call->text[k]), text, sizeof text);
     strcpy(call->text[k], text);
     const enum status status = spec_own(call->text[k], &spec);
-    snprintf(message, sizeof message, "%s", status == STATUS_OK ? "" : status_message());
     spec_free(&spec); /* zeroed where it was refused */
-    return status == STATUS_OK ? STATUS_OK : formula_error(formula, call->at[k], "%s", message);
+    return status == STATUS_OK ? STATUS_OK : formula_error(formula, call->at[k], "%s", status_message());
 }
 
 /* Is the text one of the words, which NULL ends? */

@@ -138,14 +138,12 @@ static const struct sas_host host = {sizeof host,         SAS_ABI,    host_pair,
 /* What one of their functions returned: with the name ahead of its reason. */
 static enum status returned(const struct plugin *plugin, const char *function, int status)
 {
-    char text[900];
     if (status == SAS_OK)
         return STATUS_OK;
     if (status < SAS_OK || status > SAS_UNSUPPORTED)
         return status_set(STATUS_FAILED, "%s: its %s returned status %d, must be 0 to 3", plugin->name, function,
                           status);
-    snprintf(text, sizeof text, "%s", status_message());
-    return status_set((enum status)status, "%s: %s", plugin->name, text);
+    return status_set((enum status)status, "%s: %s", plugin->name, status_message());
 }
 
 /* Ahead of a call that may fail: what is printed if it has no message. */
@@ -311,9 +309,7 @@ enum status plugin_filtered(const void *data, struct acquisition *out)
     status = acquisition_check(out, name);
     if (status != STATUS_OK) {
         acquisition_free(out);
-        char text[900];
-        snprintf(text, sizeof text, "%s", status_message());
-        status = status_set(STATUS_FAILED, "its echoes are refused: %s", text);
+        status = status_set(STATUS_FAILED, "its echoes are refused: %s", status_message());
     }
     return status;
 }
