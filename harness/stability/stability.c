@@ -93,57 +93,50 @@ static enum status scenes_choose(const struct stability_request *request, struct
     return status;
 }
 
-/* Is a scene of this shard, by the work of its exact image? Those that are refused, which take no time, are the first
-   shard's. */
-static enum status scene_is_mine(const struct cells *cells, const char *name, const struct shard *shard,
-                                 const struct spec *exact, bool *mine)
-{
-    struct scene scene;
-    const enum status status = scene_load(name, data_path(DATA_SCENES), &scene);
-    *mine = shard->number == 1;
-    if (status != STATUS_OK)
-        return status == STATUS_INVALID ? STATUS_OK : status;
-    *mine = cells->list[cells_find(cells, scene.name, exact)].mine;
-    scene_free(&scene);
-    return STATUS_OK;
-}
-
-/* Drop the scenes of other shards. With one thread: processes that are forked later could not use the others. */
+/* Drop the scenes of other shards, by the work of their exact images; those that are refused, which take no time, are
+   the first shard's. With one thread: processes that are forked later could not use the others. */
 static enum status scenes_share(struct run *run, const struct shard *shard)
 {
     const int threads = omp_get_max_threads();
     struct cells cells = {.list = NULL};
     struct spec exact;
-    int count = 0;
-    enum status status = spec_parse("reference:precision=double", &exact);
-    if (status != STATUS_OK)
+    int count = 0, *of = calloc((size_t)run->scene_count + 1, sizeof *of); /* the cells' scene; -1: refused */
+    enum status status = of ? spec_parse("reference:precision=double", &exact)
+                            : status_set(STATUS_FAILED, "stability: no memory for %d scenes", run->scene_count);
+    if (status != STATUS_OK) {
+        free(of);
         return status;
+    }
     omp_set_num_threads(1);
-    for (int k = 0; k < run->scene_count && status != STATUS_FAILED; k++) {
+    for (int k = 0; k < run->scene_count && status == STATUS_OK; k++) {
         struct scene scene;
         status = scene_load(run->scenes[k], data_path(DATA_SCENES), &scene);
+        of[k] = -1;
         if (status == STATUS_OK) {
             status = cells_add(&cells, &scene, 1, &exact);
+            of[k] = status == STATUS_OK ? cells.list[cells.count - 1].scene : -1;
             scene_free(&scene);
+        } else if (status == STATUS_INVALID) {
+            status = STATUS_OK;
         }
     }
-    if (status != STATUS_FAILED)
+    if (status == STATUS_OK)
         status = cells_deal(&cells, shard);
     for (int k = 0; k < run->scene_count && status == STATUS_OK; k++) {
-        bool mine;
-        status = scene_is_mine(&cells, run->scenes[k], shard, &exact, &mine);
-        if (status == STATUS_OK && !mine) {
-            free(run->scenes[k]);
-            run->scenes[k] = NULL;
-        }
-    }
-    for (int k = 0; k < run->scene_count; k++)
-        if (run->scenes[k])
+        int n = 0;
+        while (n < cells.count && cells.list[n].scene != of[k])
+            n++;
+        if (n < cells.count ? cells.list[n].mine : shard->number == 1)
             run->scenes[count++] = run->scenes[k];
-    run->scene_count = count;
+        else
+            free(run->scenes[k]);
+    }
+    if (status == STATUS_OK)
+        run->scene_count = count;
     omp_set_num_threads(threads);
     cells_free(&cells);
     spec_free(&exact);
+    free(of);
     return status;
 }
 
