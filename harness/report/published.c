@@ -10,10 +10,8 @@ const struct paper_table paper_tables[] = {
      "an FFT of N counts 5 N log2 N; counted: what our plans do, which read two taps where BP22 upsamples first", NULL},
     {"bp22_t3", "BP22 Table 3: PSLR and ISLR of six targets",
      "the text prints no target positions: six targets on range bins, 40 to 225 m; sound speed 1500 m/s and rect beam "
-     "cut "
-     "at sin "
-     "theta = .405 lambda/D_tx, neither of them printed, f_s = 2B, pings every 0.8 m on the pixels' raster; the "
-     "scatter among the printed targets does not reproduce",
+     "cut at sin theta = .405 lambda/D_tx, neither of them printed, f_s = 2B, pings every 0.8 m on the pixels' raster; "
+     "the scatter among the printed targets does not reproduce",
      NULL},
     {"bp22_t4", "BP22 Table 4: times as ratios to nearest neighbour",
      "simulated echoes of the real data's size (2880 x 4800 pixels from 2880 records); sinc of 8 taps; machine and "
@@ -36,26 +34,19 @@ const struct paper_table paper_tables[] = {
      NULL},
     {"lbf21_t3", "LBF21 Table III: six targets, short integration time",
      "the text prints no target positions: azimuths of Fig. 13, ranges 50, 90, 135, 180, 225, 270 m; imaged in two "
-     "parts, "
-     "near (50 to "
-     "90 "
-     "m) and far (135 to 270 m), with 16 blocks each, 2.5 and 8.4 m wide, where section V-A prefers 10 m; beam and "
-     "sound "
-     "speed as in Table II; BP is the exact image; corrected: theta at F, blocks in 1/r that blend",
+     "parts, near (50 to 90 m) and far (135 to 270 m), with 16 blocks each, 2.5 and 8.4 m wide, where section V-A "
+     "prefers 10 m; beam and sound speed as in Table II; BP is the exact image; corrected: theta at F, blocks in 1/r "
+     "that blend",
      NULL},
     {"lbf21_t4", "LBF21 Table IV: four targets, long integration time",
      "the text prints no target positions: ranges 50, 80, 225, 260 m; near and far part with 16 blocks each, 2.8 m "
-     "wide; "
-     "pixels of 0.01 "
-     "m, half those of the short array; "
-     "Wu's method is a working definition",
+     "wide; pixels of 0.01 m, half those of the short array; Wu's method is a working definition",
      NULL},
     {"lbf21_t5", "LBF21 Table V: times as ratios to LBF with 16 blocks",
-     "simulated echoes of the real data's size (48 receivers, 80 pings, 4096 samples into 3200 x 4096 pixels); PCA "
-     "and Wu with 16 blocks share LBF's engine, so that their ratios mean nothing; Wu's method is a working "
-     "definition; "
-     "plain range migration calls libm for each phase, "
-     "plain back projection is vectorised; machine and language are others",
+     "simulated echoes of the real data's size (48 receivers, 80 pings, 4096 samples into 3200 x 4096 pixels); PCA and "
+     "Wu with 16 blocks share LBF's engine, so that their ratios mean nothing; Wu's method is a working definition; "
+     "plain range migration calls libm for each phase, plain back projection is vectorised; machine and language are "
+     "others",
      "LBF, 16 blocks"},
     {"lbf21_flops", "LBF21 Eqs. (20) to (23): FLOPs of range migration and back projection",
      "N_interp = 8; N_a is 3200 in the paper and 48 x 80 = 3840 in our plans; Eq. (20) counts one sub-block", NULL},
