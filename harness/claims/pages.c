@@ -273,11 +273,6 @@ static enum status picture_copy(const struct pages *pages, const char *name)
     return status;
 }
 
-static int by_name(const struct dirent **a, const struct dirent **b)
-{
-    return strcmp((*a)->d_name, (*b)->d_name);
-}
-
 /* Is it a picture of the table: figure-ID.png, figure-ID-SCENE-METHOD.png, or the phase study's of its receiver? */
 static bool picture_is(const char *name, const struct paper_table *table)
 {
@@ -299,7 +294,7 @@ static bool picture_is(const char *name, const struct paper_table *table)
 static enum status pictures_write(const struct pages *pages, const struct paper_table *table, FILE *stream)
 {
     struct dirent **entries = NULL;
-    const int count = scandir(pages->from, &entries, NULL, by_name);
+    const int count = scandir(pages->from, &entries, NULL, alphasort);
     enum status status = STATUS_OK;
     for (int k = 0; k < count; k++) {
         if (status == STATUS_OK && picture_is(entries[k]->d_name, table)) {

@@ -73,26 +73,9 @@ void formula_word(struct formula *formula, char *word, size_t size)
 
 /* ---- arithmetic ---- */
 
-static double add(double a, double b)
-{
-    return a + b;
-}
-static double subtract(double a, double b)
-{
-    return a - b;
-}
-static double multiply(double a, double b)
-{
-    return a * b;
-}
-static double divide(double a, double b)
-{
-    return a / b;
-}
-
 /* a = a OPERATOR b, element by element; one number goes with each of several. */
 static enum status combine(struct formula *formula, const char *at, struct values *a, const struct values *b,
-                           double (*operation)(double, double))
+                           char operation)
 {
     if (a->count != b->count && a->count != 1 && b->count != 1)
         return formula_error(formula, at,
@@ -100,8 +83,10 @@ static enum status combine(struct formula *formula, const char *at, struct value
                              "number, are accepted",
                              a->count, b->count);
     struct values result = {.count = a->count > b->count ? a->count : b->count, .timed = a->timed || b->timed};
-    for (int k = 0; k < result.count; k++)
-        result.at[k] = operation(a->at[a->count == 1 ? 0 : k], b->at[b->count == 1 ? 0 : k]);
+    for (int k = 0; k < result.count; k++) {
+        const double x = a->at[a->count == 1 ? 0 : k], y = b->at[b->count == 1 ? 0 : k];
+        result.at[k] = operation == '+' ? x + y : operation == '-' ? x - y : operation == '*' ? x * y : x / y;
+    }
     *a = result;
     return STATUS_OK;
 }
@@ -316,7 +301,7 @@ static enum status product_read(struct formula *formula, struct values *values)
             break;
         status = factor_read(formula, &factor);
         if (status == STATUS_OK)
-            status = combine(formula, at, values, &factor, times ? multiply : divide);
+            status = combine(formula, at, values, &factor, times ? '*' : '/');
     }
     return status;
 }
@@ -332,7 +317,7 @@ enum status quantity_read(struct formula *formula, struct values *values)
             break;
         status = product_read(formula, &term);
         if (status == STATUS_OK)
-            status = combine(formula, at, values, &term, plus ? add : subtract);
+            status = combine(formula, at, values, &term, plus ? '+' : '-');
     }
     return status;
 }

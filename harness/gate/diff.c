@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "gate/diff_side.h"
 #include "measure/timing.h"
@@ -302,12 +303,6 @@ static bool is_folder(const char *path)
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
-static bool exists(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0;
-}
-
 /* The file of this name in a folder; a file stands for itself. NULL without memory. */
 static const char *path_in(struct diff *diff, const char *path, const char *name)
 {
@@ -345,7 +340,7 @@ enum status diff_results(const char *old, const char *new, struct diff *diff)
     }
     if (status == STATUS_OK)
         status = files_compare(diff, paths, sides, NULL);
-    if (status == STATUS_OK && folders && exists(targets[0]))
+    if (status == STATUS_OK && folders && access(targets[0], F_OK) == 0)
         status = files_compare(diff, targets, target_sides, sides);
     for (int k = 0; k < 2; k++) {
         side_close(&target_sides[k]);
