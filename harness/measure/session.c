@@ -29,7 +29,6 @@ static void choose(const struct session *session, const struct spec *spec, const
                    struct chosen *chosen)
 {
     const struct problem problem = scene_problem(session->scene, spec->precision);
-    const double begin = seconds_now();
     *chosen = (struct chosen){.choice = {.list = NULL}};
     chosen->status = spec_copy(spec, &chosen->asked);
     if (chosen->status == STATUS_OK)
@@ -39,7 +38,6 @@ static void choose(const struct session *session, const struct spec *spec, const
     if (chosen->status != STATUS_OK)
         snprintf(chosen->message, sizeof chosen->message, "%s", status_message());
     image_free(&chosen->choice.image);
-    chosen->seconds = seconds_now() - begin;
 }
 
 const struct chosen *session_chosen(struct session *session, const struct spec *spec)
@@ -120,7 +118,6 @@ enum status session_open(const struct scene *scene, struct session *session)
 {
     *session = (struct session){.scene = scene};
     session->condition_count = scene_conditions(scene, session->conditions);
-    const double begin = seconds_now();
     enum status status = scene_echoes(scene, &session->echoes[PRECISION_DOUBLE]);
     if (status == STATUS_OK)
         status = echoes_convert(&session->echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &session->echoes[PRECISION_FLOAT]);
@@ -131,11 +128,8 @@ enum status session_open(const struct scene *scene, struct session *session)
     session->echoes[PRECISION_FLOAT].exponent -= exponent;
     const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
     session->control = control_begin(&problem, &session->echoes[PRECISION_FLOAT]);
-    const double made = seconds_now();
-    session->spent.echoes = made - begin;
     if (status == STATUS_OK)
         status = form_reference(session);
-    session->spent.reference = seconds_now() - made;
     if (status != STATUS_OK)
         session_close(session);
     return status;
@@ -160,13 +154,4 @@ void session_close(struct session *session)
     image_free(&session->flown);
     echoes_free(&session->echoes[PRECISION_FLOAT]);
     echoes_free(&session->echoes[PRECISION_DOUBLE]);
-}
-
-void session_spent(const struct session *session, struct spent *sum)
-{
-    sum->echoes += session->spent.echoes;
-    sum->reference += session->spent.reference;
-    sum->planning += session->spent.planning;
-    sum->imaging += session->spent.imaging;
-    sum->control += session->control.spent_s;
 }

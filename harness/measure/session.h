@@ -11,7 +11,7 @@
 
 /* Wall time, s. */
 struct spent {
-    double echoes, reference, planning, imaging, control;
+    double planning, imaging;
 };
 
 /* What session_chosen made of a SPEC that leaves the choice to the harness. */
@@ -21,7 +21,6 @@ struct chosen {
     enum status status;   /* STATUS_UNSUPPORTED where no setting meets the budget; do not use the rest then */
     char message[600];    /* why */
     struct spec spec;
-    double seconds; /* of the choice, beyond forming the chosen image once */
 };
 
 /* Made by session_open, released by session_close. */
@@ -36,7 +35,7 @@ struct session {
     struct condition conditions[SCENE_CONDITIONS + DARKNESS_CONDITIONS];
     int condition_count;
     struct control control; /* its times beside those of the algorithms */
-    struct spent spent;     /* so far, without the control */
+    struct spent spent;     /* so far */
     struct chosen *chosen;  /* [chosen_count] made so far by session_chosen */
     int chosen_count;
 };
@@ -48,8 +47,6 @@ enum status session_open(const struct scene *scene, struct session *session);
 /* Of a recording whose echoes stay in their file. Errors are then measured on some pixels of each tile. */
 void session_open_tiled(const struct scene *scene, double memory, struct session *session);
 void session_close(struct session *session);
-/* Add the session's times to `sum`. */
-void session_spent(const struct session *session, struct spent *sum);
 
 /* What an algorithm images: the scene's patches. An exact algorithm, too slow for a whole swath, images only the
    pixels that are compared. Points into the scene. */

@@ -237,7 +237,6 @@ static enum status control_open(struct control *control)
    used again. */
 static enum status control_measure(struct control *control, bool recent, double *least)
 {
-    const double begin = seconds_now();
     enum status status = control->open ? STATUS_OK : control_open(control);
     if (status != STATUS_OK)
         return status;
@@ -247,7 +246,6 @@ static enum status control_measure(struct control *control, bool recent, double 
         control->measured = seconds_now();
     }
     *least = fmin(control->seconds[0], control->seconds[1]);
-    control->spent_s += seconds_now() - begin;
     return STATUS_OK;
 }
 

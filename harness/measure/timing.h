@@ -19,7 +19,6 @@ struct control {
     bool open;
     double seconds[CONTROL_RUNS]; /* a pair's time, last measured */
     double measured;              /* seconds_now() at that time */
-    double spent_s;               /* so far, on all measurements */
 };
 
 /* `echoes` are in float, whatever the problem's precision; they and what the problem points to are borrowed. */

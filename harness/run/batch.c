@@ -174,7 +174,8 @@ static void stay_end(struct batch *batch, struct stay *stay, bool drawn)
         pictures_draw(&stay->visit.pictures);
     batch->drawn_s += seconds_now() - begin;
     batch->undrawn += stay->visit.pictures.queue.undrawn;
-    session_spent(&stay->visit.session, &batch->spent);
+    batch->spent.planning += stay->visit.session.spent.planning;
+    batch->spent.imaging += stay->visit.session.spent.imaging;
     visit_close(&stay->visit);
 }
 
