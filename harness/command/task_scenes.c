@@ -10,8 +10,8 @@ enum status echoes_scene(const struct task *task, struct scene *scene)
     const enum status status = task->grid ? grid_parse(task->grid, &grid) : STATUS_OK;
     if (status != STATUS_OK)
         return status;
-    return (image_is_tiled(task) ? scene_from_recording : scene_from_echoes)(
-        task->echoes, task->grid ? &grid : NULL, task->grid ? task->grid : task->echoes, scene);
+    return scene_from_echoes(task->echoes, task->grid ? &grid : NULL, task->grid ? task->grid : task->echoes,
+                             !image_is_tiled(task), scene);
 }
 
 enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,

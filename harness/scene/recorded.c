@@ -82,10 +82,9 @@ enum status recorded_fill(struct reading *reading)
     enum status status = recording_read(path, scene);
     free(path);
     if (status != STATUS_OK) {
-        char place[320], message[600];
-        snprintf(message, sizeof message, "%s", status_message());
+        char place[320];
         place_format(reading, config_setting_source_line(setting), place, sizeof place);
-        return status_set(status, "%s: key 'echoes': %s", place, message);
+        return status_set(status, "%s: key 'echoes': %s", place, status_message());
     }
     if (isfinite(aperture_limit)) {
         scene->acquisition.aperture_limit = aperture_limit;
@@ -191,8 +190,8 @@ static enum status from_echoes(const char *path, const struct grid *grid, const 
     return grid_meets_records(&scene->acquisition, scene->patch_count, scene->patches, place);
 }
 
-static enum status from_file(const char *path, const struct grid *grid, const char *place, bool whole,
-                             struct scene *out)
+enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, bool whole,
+                              struct scene *out)
 {
     *out = (struct scene){.hash = HASH_BEGIN};
     enum status status = from_echoes(path, grid, place, whole, out);
@@ -200,16 +199,6 @@ static enum status from_file(const char *path, const struct grid *grid, const ch
         scene_free(out);
     }
     return status;
-}
-
-enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out)
-{
-    return from_file(path, grid, place, true, out);
-}
-
-enum status scene_from_recording(const char *path, const struct grid *grid, const char *place, struct scene *out)
-{
-    return from_file(path, grid, place, false, out);
 }
 
 /* The scene's pings of a file. */

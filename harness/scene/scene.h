@@ -68,11 +68,10 @@ struct scene {
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out);
 /* The scene of an echo file alone, with its point targets, named after the file; its image is `grid`, which `place`
    names in messages; NULL: the file's own. Errors: as echo_file_read, and STATUS_INVALID where there is no grid or no
-   pixel meets any record; nothing to free then. */
-enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out);
-/* The same, with the samples left in the file and read ping by ping. Its hash has the file's size and time in their
-   place. */
-enum status scene_from_recording(const char *path, const struct grid *grid, const char *place, struct scene *out);
+   pixel meets any record; nothing to free then. Unless `whole`, the samples stay in the file and are read ping by ping;
+   the hash has the file's size and time in their place. */
+enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, bool whole,
+                              struct scene *out);
 void scene_free(struct scene *scene);
 /* What an echo file keeps of the scene; borrows from it. */
 struct echo_notes scene_notes(const struct scene *scene);

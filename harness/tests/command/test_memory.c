@@ -175,8 +175,8 @@ static void samples_in_a_file_are_the_same(void **state)
     struct scene whole, part;
     struct echoes echoes;
     long_write();
-    assert_int_equal(scene_from_echoes(path_in("long.mat"), NULL, "grid", &whole), STATUS_OK);
-    assert_int_equal(scene_from_recording(path_in("long.mat"), NULL, "grid", &part), STATUS_OK);
+    assert_int_equal(scene_from_echoes(path_in("long.mat"), NULL, "grid", true, &whole), STATUS_OK);
+    assert_int_equal(scene_from_echoes(path_in("long.mat"), NULL, "grid", false, &part), STATUS_OK);
     const struct acquisition all = part.acquisition;
     const size_t each = (size_t)all.receivers * (size_t)all.samples;
     part.recording.first = 1400;

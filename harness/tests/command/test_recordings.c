@@ -284,7 +284,7 @@ static void content_tells_scenes_apart(void **state)
     for (int k = 0; k < 3; k++) {
         char path[700];
         snprintf(path, sizeof path, "%s", path_in(k == 0 ? "good.mat" : "copy.mat"));
-        if (scene_from_echoes(path, &grid, "grid", &scene) != STATUS_OK)
+        if (scene_from_echoes(path, &grid, "grid", true, &scene) != STATUS_OK)
             fail_msg("%s", status_message());
         hashes[k] = scene.hash;
         const struct echoes echoes = {&scene.acquisition, PRECISION_DOUBLE, scene.recorded, 0};

@@ -35,8 +35,8 @@ static int recording_make(void **state)
     const bool made = echo_file_stream(path, &scene.acquisition, &source, &none) == STATUS_OK;
     simulation_close(simulation);
     scene_free(&scene);
-    return made && scene_from_echoes(path, &grid, path, &whole) == STATUS_OK
-                   && scene_from_recording(path, &grid, path, &part) == STATUS_OK
+    return made && scene_from_echoes(path, &grid, path, true, &whole) == STATUS_OK
+                   && scene_from_echoes(path, &grid, path, false, &part) == STATUS_OK
                    && session_open(&whole, &session) == STATUS_OK
                ? 0
                : -1;

@@ -162,7 +162,7 @@ static void recordings_are_told(void **state)
         if (!support_recording(files[k].name, path, sizeof path))
             skip();
         assert_int_equal(grid_parse(files[k].grid, &grid), STATUS_OK);
-        if (scene_from_echoes(path, &grid, "grid", &scene) != STATUS_OK)
+        if (scene_from_echoes(path, &grid, "grid", true, &scene) != STATUS_OK)
             fail_msg("%s: %s", path, status_message());
         every_way_is_told(&scene, files[k].name);
     }
