@@ -84,11 +84,6 @@ static double vector_length(struct vector v)
     return hypot(hypot(v.x, v.y), v.z);
 }
 
-static struct vector vector_difference(struct vector a, struct vector b)
-{
-    return (struct vector){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
 static enum status check_scalars(const struct acquisition *a, const char *place)
 {
     const struct {

@@ -3,6 +3,7 @@
 #define SASBENCH_CONTRACT_ACQUISITION_H
 
 #include <complex.h>
+#include <math.h>
 #include <stdbool.h>
 
 #include "contract/status.h"
@@ -11,6 +12,21 @@
 struct vector {
     double x, y, z;
 };
+
+static inline struct vector vector_difference(struct vector a, struct vector b)
+{
+    return (struct vector){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline double vector_dot(struct vector a, struct vector b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline double vector_norm(struct vector v)
+{
+    return sqrt(vector_dot(v, v));
+}
 
 /* PF05 Eq. (12): |x - x_c| < half_x and |r - r_c| < half_r, m. */
 struct target_area {

@@ -149,26 +149,16 @@ double condition_amplitude(const struct acquisition *a, double r, double u)
     return condition_pair_amplitude(a, r, u, 0);
 }
 
-static double dot(struct vector v, struct vector w)
-{
-    return v.x * w.x + v.y * w.y + v.z * w.z;
-}
-
-static struct vector difference(struct vector v, struct vector w)
-{
-    return (struct vector){v.x - w.x, v.y - w.y, v.z - w.z};
-}
-
 double condition_along(struct vector axis, struct vector from, struct vector to)
 {
-    return dot(difference(to, from), axis);
+    return vector_dot(vector_difference(to, from), axis);
 }
 
 /* Unit vector from one ping to another; acquisition_heading where they are in one place. */
 static struct vector axis_between(const struct acquisition *a, int first, int last)
 {
-    const struct vector way = difference(a->tx[last], a->tx[first]);
-    const double length = sqrt(dot(way, way));
+    const struct vector way = vector_difference(a->tx[last], a->tx[first]);
+    const double length = vector_norm(way);
     const struct vector axis =
         length > 0 ? (struct vector){way.x / length, way.y / length, way.z / length} : acquisition_heading(a, first);
     return axis.x < 0 ? (struct vector){-axis.x, -axis.y, -axis.z} : axis;
@@ -220,10 +210,10 @@ struct extent {
    seen within the beam's sine times its distance. */
 static double off_axis(const struct acquisition *a, int p, struct vector place, double *distance)
 {
-    const struct vector axis = axis_about(a, p), way = difference(a->tx[p], place);
-    const double u = dot(way, axis);
+    const struct vector axis = axis_about(a, p), way = vector_difference(a->tx[p], place);
+    const double u = vector_dot(way, axis);
     const struct vector across = {way.x - u * axis.x, way.y - u * axis.y, way.z - u * axis.z};
-    const double across2 = dot(across, across);
+    const double across2 = vector_dot(across, across);
     *distance = sqrt(u * u + across2);
     return a->echo_squint != 0 ? u * cos(a->echo_squint) + sqrt(across2) * sin(a->echo_squint) : u;
 }
@@ -368,16 +358,11 @@ double condition_slope(const struct problem *problem)
     return extent_of(problem).slope;
 }
 
-static double length_of(struct vector v)
-{
-    return sqrt(dot(v, v));
-}
-
 double condition_speed(const struct acquisition *a)
 {
     double fastest = 0;
     for (int p = 0; p < a->pings; p++)
-        fastest = fmax(fastest, length_of(a->velocity[p]));
+        fastest = fmax(fastest, vector_norm(a->velocity[p]));
     return fastest;
 }
 
@@ -385,8 +370,8 @@ double condition_speed(const struct acquisition *a)
 static double interval_after(const struct acquisition *a, int p)
 {
     const struct vector *tx = a->tx + p;
-    const double speed = (length_of(a->velocity[p]) + length_of(a->velocity[p + 1])) / 2;
-    const double way = length_of(difference(tx[1], tx[0]));
+    const double speed = (vector_norm(a->velocity[p]) + vector_norm(a->velocity[p + 1])) / 2;
+    const double way = vector_norm(vector_difference(tx[1], tx[0]));
     return speed > 0 ? way / speed : 0;
 }
 

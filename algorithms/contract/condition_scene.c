@@ -41,15 +41,10 @@ static double axis_component(struct vector slope, const struct grid *g, int axis
                      : slope.x * sin(g->angle_rad) + slope.y * cos(g->angle_rad);
 }
 
-static double distance(struct vector a, struct vector b)
-{
-    return sqrt(pow(b.x - a.x, 2) + pow(b.y - a.y, 2) + pow(b.z - a.z, 2));
-}
-
 /* Unit vector from a to b, added to `sum`. */
 static void direction_add(struct vector a, struct vector b, struct vector *sum)
 {
-    const double length = distance(a, b);
+    const double length = vector_norm(vector_difference(b, a));
     if (!(length > 0))
         return;
     sum->x += (b.x - a.x) / length;
@@ -166,9 +161,9 @@ static double longest_step(const struct problem *problem)
     const struct acquisition *a = problem->acquisition;
     double longest = fmax(a->tx_length, a->rx_length);
     if (a->receivers > 1)
-        longest = fmax(longest, distance(a->rx[0], a->rx[1]));
+        longest = fmax(longest, vector_norm(vector_difference(a->rx[1], a->rx[0])));
     if (a->pings > 1)
-        longest = fmax(longest, distance(a->tx[0], a->tx[1]));
+        longest = fmax(longest, vector_norm(vector_difference(a->tx[1], a->tx[0])));
     for (int k = 0; k < problem->patch_count; k++)
         longest = fmax(longest, fmax(problem->patches[k].x_step, problem->patches[k].r_step));
     return longest;
@@ -191,13 +186,13 @@ static struct motion motion_of(const struct acquisition *a)
         const struct vector step = {(v[0].x + v[1].x) / 2 * a->pri, (v[0].y + v[1].y) / 2 * a->pri,
                                     (v[0].z + v[1].z) / 2 * a->pri};
         way = (struct vector){way.x + step.x, way.y + step.y, way.z + step.z};
-        motion.told += distance((struct vector){0, 0, 0}, step) / (a->pings - 1);
-        motion.found += distance(a->tx[p], a->tx[p + 1]) / (a->pings - 1);
+        motion.told += vector_norm(step) / (a->pings - 1);
+        motion.found += vector_norm(vector_difference(a->tx[p + 1], a->tx[p])) / (a->pings - 1);
     }
     const struct vector *first = a->tx, *last = a->tx + a->pings - 1;
     if (motion.told > 0 && motion.found > 0)
-        motion.off = distance((struct vector){last->x - first->x, last->y - first->y, last->z - first->z}, way)
-                     / (motion.found * (a->pings - 1));
+        motion.off =
+            vector_norm(vector_difference(way, vector_difference(*last, *first))) / (motion.found * (a->pings - 1));
     return motion;
 }
 

@@ -14,11 +14,6 @@
 
 enum { PIXELS_MOST = 1000 };
 
-static double distance(struct vector a, struct vector b)
-{
-    return sqrt(pow(a.x - b.x, 2) + pow(a.y - b.y, 2) + pow(a.z - b.z, 2));
-}
-
 /* Ranges whose whole echoes lie in every record, by the monostatic delay. False where there are none. */
 static bool ranges_find(const struct acquisition *a, double *nearest, double *farthest)
 {
@@ -55,9 +50,9 @@ static double azimuth_resolution(const struct acquisition *a, double range)
     const double wavelength = a->sound_speed / a->fc;
     double length = 0, sine = condition_beam_sine(a);
     for (int p = 0; p < a->pings; p++)
-        length = fmax(length, distance(a->tx[p], a->tx[0]));
+        length = fmax(length, vector_norm(vector_difference(a->tx[p], a->tx[0])));
     for (int m = 0; m < a->receivers; m++)
-        length = fmax(length, distance(a->rx[m], a->tx[0]) / 2);
+        length = fmax(length, vector_norm(vector_difference(a->rx[m], a->tx[0])) / 2);
     const double half_angle = fmin(atan2(length / 2, range), asin(fmin(sine, 1)));
     return half_angle > 0 ? fmax(wavelength / 4, wavelength / (4 * sin(half_angle))) : wavelength;
 }
@@ -86,10 +81,9 @@ bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
         return false;
     const double middle = (nearest + farthest) / 2, ahead = middle * tan(a->echo_squint);
     double resolution_x = azimuth_resolution(a, middle), resolution_r = range_resolution;
-    const struct vector origin = {0, 0, 0};
     bool around_origin = true; /* every ping sees it, and looks down at it from afar */
     for (int p = 0; p < a->pings; p++) {
-        const double range = distance(a->tx[p], origin);
+        const double range = vector_norm(a->tx[p]);
         around_origin &= range > nearest && range < farthest && hypot(a->tx[p].y, a->tx[p].z) > 0.1 * range;
     }
     if (acquisition_is_straight(a, &track)) {

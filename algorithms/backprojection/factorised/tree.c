@@ -22,16 +22,6 @@ double tree_phase_limit(const struct tree_settings *settings, const struct acqui
     return budget_limit(fmin(1e-3, fmax(1e-6, 0.03 * settings->error)), a->fc, a->fs);
 }
 
-static double length(struct vector v)
-{
-    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
-static struct vector difference(struct vector a, struct vector b)
-{
-    return (struct vector){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
 static void add(struct vector *sum, struct vector v, double weight)
 {
     sum->x += weight * v.x;
@@ -46,7 +36,7 @@ static double delay_of_middle(const struct problem *problem, struct vector tx)
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
         const struct vector middle = grid_point(g, 0.5 * (g->r_count - 1), 0.5 * (g->x_count - 1));
-        sum += 2 * length(difference(middle, tx)) / problem->acquisition->sound_speed;
+        sum += 2 * vector_norm(vector_difference(middle, tx)) / problem->acquisition->sound_speed;
     }
     return sum / problem->patch_count;
 }
@@ -72,7 +62,7 @@ static void subaperture_place(const struct problem *problem, struct subaperture 
         for (int m = 0; m < a->receivers; m++)
             add(&centre, middle_of(problem, p, m), one);
     }
-    const double size = length(normal);
+    const double size = vector_norm(normal);
     part->x = centre.x;
     part->y = centre.y;
     part->tx = tx;
@@ -80,8 +70,8 @@ static void subaperture_place(const struct problem *problem, struct subaperture 
     part->normal_radius = size > 0 ? 0 : M_PI;
     for (int p = part->ping; p < part->ping + part->pings; p++) {
         const struct vector n = acquisition_normal(a, p);
-        const double off = length(difference(n, part->normal));
-        part->tx_radius = fmax(part->tx_radius, length(difference(a->tx[p], tx)));
+        const double off = vector_norm(vector_difference(n, part->normal));
+        part->tx_radius = fmax(part->tx_radius, vector_norm(vector_difference(a->tx[p], tx)));
         part->normal_radius = fmax(part->normal_radius, 2 * asin(fmin(1, 0.5 * off)));
         part->radius = fmax(part->radius, hypot(a->tx[p].x - part->x, a->tx[p].y - part->y));
         for (int m = 0; m < a->receivers; m++) {

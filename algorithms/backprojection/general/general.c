@@ -342,10 +342,8 @@ static double general_beside(const struct bp *bp)
     const struct acquisition *a = bp->problem.acquisition;
     const int joined = bp_pings_joined(a);
     double apart = 0;
-    for (int p = 1; p < a->pings && joined > 1; p++) {
-        const struct vector at = a->tx[p], before = a->tx[p - 1];
-        apart = fmax(apart, sqrt(pow(at.x - before.x, 2) + pow(at.y - before.y, 2) + pow(at.z - before.z, 2)));
-    }
+    for (int p = 1; p < a->pings && joined > 1; p++)
+        apart = fmax(apart, vector_norm(vector_difference(a->tx[p], a->tx[p - 1])));
     return (joined - 1) * apart;
 }
 
