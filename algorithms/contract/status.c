@@ -17,19 +17,19 @@ enum status status_set(enum status status, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     snprintf(message, sizeof message, "%s", text);
-    if (!omp_in_parallel())
-        *of_workers = '\0';
-    else
 #pragma omp critical(status_of_workers)
-        snprintf(of_workers, sizeof of_workers, "%s", text);
+    snprintf(of_workers, sizeof of_workers, "%s", omp_in_parallel() ? text : "");
     return status;
 }
 
 const char *status_message(void)
 {
-    if (!omp_in_parallel() && *of_workers) {
-        snprintf(message, sizeof message, "%s", of_workers);
-        *of_workers = '\0';
+    if (!omp_in_parallel()) {
+#pragma omp critical(status_of_workers)
+        if (*of_workers) {
+            snprintf(message, sizeof message, "%s", of_workers);
+            *of_workers = '\0';
+        }
     }
     return message;
 }

@@ -30,6 +30,23 @@ static void texts_take(void)
     H5Tclose(variable);
 }
 
+/* One reader at a time (matread.h). */
+static H5E_auto2_t tell;
+static void *tell_data;
+
+void hdf5_begin(void)
+{
+    H5Eget_auto2(H5E_DEFAULT, &tell, &tell_data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    texts_take();
+}
+
+void hdf5_end(void)
+{
+    H5Tunregister(H5T_PERS_DONTCARE, NULL, -1, -1, text_convert);
+    H5Eset_auto2(H5E_DEFAULT, tell, tell_data);
+}
+
 /* Are a dataset's values, where they are complex, of members `real` and `imag`? */
 static bool is_of_parts(hid_t file, const char *name)
 {
@@ -46,7 +63,6 @@ static bool is_of_parts(hid_t file, const char *name)
 enum status hdf5_prepare(const char *path, const struct wanted *wanted, int count)
 {
     enum status status = STATUS_OK;
-    texts_take();
     const hid_t file = H5Fis_hdf5(path) > 0 ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
     for (int k = 0; file >= 0 && k < count && status == STATUS_OK; k++)
         if (H5Lexists(file, wanted[k].name, H5P_DEFAULT) > 0 && !is_of_parts(file, wanted[k].name))

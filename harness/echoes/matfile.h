@@ -4,6 +4,10 @@
 
 #include "echoes/echo_data.h"
 
+/* From now on a thread reads all files, one file at a time, and no process: for a program that is not ours, whose
+   threads a process of its own would stop in the middle. Damage that crashes libmatio then ends the program. */
+void variables_read_by_thread(void);
+
 /* Read an echo file. *acquisition and *echoes (double, samples pointing to that acquisition) are the caller's:
    acquisition_free, echoes_free. Of a pulse beyond 2^+-20 both pulse and samples are divided by its power of two.
    Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */

@@ -294,12 +294,8 @@ static enum status rest_check(const char *path, const struct wanted *wanted, int
 }
 
 static enum status send_variables(const char *path, const struct wanted *wanted, int count, size_t file_size,
-                                  int descriptor)
+                                  mat_t *mat, int descriptor)
 {
-    matio_silence();
-    if (strchr(wanted->name, '/') && H5Fis_hdf5(path) > 0)
-        return hdf5_fields_send(path, wanted, count, file_size, descriptor);
-    mat_t *mat = Mat_Open(path, MAT_ACC_RDONLY);
     if (!mat || Mat_GetVersion(mat) == MAT_FT_MAT4) {
         return strchr(wanted->name, '/')
                    ? status_set(STATUS_INVALID, "%s: is neither a MATLAB file of version 5 or 7.3 nor HDF5", path)
@@ -344,6 +340,29 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     return status;
 }
 
+void variables_reply(const char *path, const struct wanted *wanted, int count, size_t file_size, int descriptor)
+{
+    struct packet packet;
+    memset(&packet, 0, sizeof packet);
+    packet.index = END;
+    matio_silence();
+    hdf5_begin();
+    if (strchr(wanted->name, '/') && H5Fis_hdf5(path) > 0) {
+        packet.status = hdf5_fields_send(path, wanted, count, file_size, descriptor);
+    } else {
+        mat_t *mat = Mat_Open(path, MAT_ACC_RDONLY);
+        packet.status = send_variables(path, wanted, count, file_size, mat, descriptor);
+        if (mat)
+            Mat_Close(mat);
+    }
+    hdf5_end();
+    char message[MESSAGE_SIZE] = "";
+    snprintf(message, sizeof message, "%s", status_message());
+    if (write_fully(descriptor, &packet, sizeof packet)) {
+        write_fully(descriptor, message, sizeof message);
+    }
+}
+
 _Noreturn void variables_send(const char *path, const struct wanted *wanted, int count, size_t file_size,
                               int descriptor)
 {
@@ -356,14 +375,6 @@ _Noreturn void variables_send(const char *path, const struct wanted *wanted, int
     dup2(silence, STDERR_FILENO);
     limit_resource(RLIMIT_CORE, 0);
     limit_memory_and_time(SPARE_BYTES);
-    struct packet packet;
-    memset(&packet, 0, sizeof packet);
-    packet.index = END;
-    packet.status = send_variables(path, wanted, count, file_size, descriptor);
-    char message[MESSAGE_SIZE] = "";
-    snprintf(message, sizeof message, "%s", status_message());
-    if (write_fully(descriptor, &packet, sizeof packet)) {
-        write_fully(descriptor, message, sizeof message);
-    }
+    variables_reply(path, wanted, count, file_size, descriptor);
     _exit(0); /* the parent's buffers and exit handlers are not ours */
 }

@@ -1,4 +1,4 @@
-/* The messages of the process that reads a MATLAB file to the one that started it. */
+/* The messages of the process, or the thread, that reads a MATLAB file to the one that started it. */
 #ifndef SASBENCH_ECHOES_MATREAD_H
 #define SASBENCH_ECHOES_MATREAD_H
 
@@ -15,6 +15,8 @@ struct packet {
     enum precision precision; /* of the numbers that follow */
 };
 
+/* Read the file and send all of it. */
+void variables_reply(const char *path, const struct wanted *wanted, int count, size_t file_size, int descriptor);
 /* All that the reading process does, until it ends. */
 _Noreturn void variables_send(const char *path, const struct wanted *wanted, int count, size_t file_size,
                               int descriptor);

@@ -1,10 +1,12 @@
-/* Reading MATLAB files: the process that gets the variables from another (matread.c). */
+/* Reading MATLAB files: the process that gets the variables from another, or from a thread (matread.c). */
 #define _GNU_SOURCE /* pipe2, _Fork */
 #include "echoes/matread.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -165,6 +167,65 @@ static enum status receive_variables(const char *path, const struct wanted *want
     return reader_crashed(path);
 }
 
+static bool by_thread;
+
+void variables_read_by_thread(void)
+{
+    by_thread = true;
+}
+
+/* What reads a file and writes into a pipe, whose writing end it closes. */
+struct reader {
+    const char *path;
+    const struct wanted *wanted;
+    int count;
+    size_t file_size;
+    int ends[2];
+    pid_t process;
+    pthread_t thread;
+};
+
+/* _Fork runs no handlers: LLVM's OpenMP would set itself up anew in the child and leave a file behind. The other
+   threads are idle here and hold no locks. */
+static bool process_begin(struct reader *reader)
+{
+    reader->process = _Fork();
+    if (reader->process == 0) {
+        close(reader->ends[0]);
+        variables_send(reader->path, reader->wanted, reader->count, reader->file_size, reader->ends[1]);
+    }
+    if (reader->process > 0)
+        close(reader->ends[1]);
+    return reader->process > 0;
+}
+
+static void *thread_run(void *data)
+{
+    const struct reader *reader = data;
+    variables_reply(reader->path, reader->wanted, reader->count, reader->file_size, reader->ends[1]);
+    close(reader->ends[1]);
+    return NULL;
+}
+
+/* Without signals, above all that of a pipe which nobody reads on. */
+static bool thread_begin(struct reader *reader)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const bool begun = pthread_create(&reader->thread, NULL, thread_run, reader) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return begun;
+}
+
+static void reader_end(struct reader *reader)
+{
+    if (by_thread)
+        pthread_join(reader->thread, NULL);
+    while (!by_thread && waitpid(reader->process, NULL, 0) < 0 && errno == EINTR) {
+    }
+}
+
 enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables)
 {
     for (int i = 0; i < count; i++) {
@@ -183,24 +244,17 @@ enum status variables_read(const char *path, const struct wanted *wanted, int co
         return status_set(STATUS_FAILED, "%s: no pipe to read it through: %s", path, strerror(errno));
     }
     fcntl(ends[0], F_SETPIPE_SZ, 1 << 20); /* fewer turns; where refused, it is smaller */
-    /* _Fork runs no handlers: LLVM's OpenMP would set itself up anew in the child and leave a file behind. The other
-       threads are idle here and hold no locks. */
-    pid_t child = _Fork();
-    if (child < 0) {
-        enum status failed = status_set(STATUS_FAILED, "%s: no process to read it: %s", path, strerror(errno));
+    struct reader reader = {path, wanted, count, (size_t)file.st_size, {ends[0], ends[1]}};
+    const bool begun = by_thread ? thread_begin(&reader) : process_begin(&reader);
+    if (!begun) {
+        enum status failed = status_set(STATUS_FAILED, "%s: no %s to read it", path, by_thread ? "thread" : "process");
         close(ends[0]);
         close(ends[1]);
         return failed;
     }
-    if (child == 0) {
-        close(ends[0]);
-        variables_send(path, wanted, count, (size_t)file.st_size, ends[1]);
-    }
-    close(ends[1]);
     enum status status = receive_variables(path, wanted, count, variables, ends[0]);
     close(ends[0]);
-    while (waitpid(child, NULL, 0) < 0 && errno == EINTR) {
-    }
+    reader_end(&reader);
     if (status == STATUS_OK) {
         status = variables_check(path, wanted, count, variables);
     }

@@ -52,6 +52,9 @@ size_t variable_count(const struct variable *variable);
 bool variable_is_vector(const struct variable *variable); /* a row or a column */
 bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);
 
+/* Around all that reads a file, one at a time: HDF5 prints nothing, and takes texts as hdf5_prepare needs them. */
+void hdf5_begin(void);
+void hdf5_end(void);
 /* Let HDF5 read names of MATLAB's classes as h5py writes them. Names of no fixed length become empty: such a variable
    has no class, but it and all that follow are still listed. Errors: STATUS_INVALID for complex numbers whose parts are
    not `real` and `imag`, of which libmatio would read nothing, silently. */

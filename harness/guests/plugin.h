@@ -17,6 +17,11 @@ struct plugin {
     char hash[HASH_TEXT];
 };
 
+/* An algorithm that lies in this process already: *plugin is zeroed, and lives as long as *algorithm; so do `name` and
+   what *theirs points to. `origin` identifies its code. Errors: STATUS_INVALID naming what it leaves out. */
+enum status plugin_adopt(const char *name, const char *origin, const struct sas_algorithm *theirs,
+                         struct plugin *plugin, struct algorithm *algorithm);
+
 enum status plugin_plan(const struct problem *problem, const void *method, const void *options, void **out);
 enum status plugin_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 enum status plugin_filtered(const void *plan, struct acquisition *out);

@@ -197,6 +197,37 @@ static enum status load_try(struct plugin *plugin, const char *path)
                               WIFSTOPPED(state) ? "stops" : "ends", number, strsignal(number));
 }
 
+static void algorithm_fill(const struct plugin *plugin, struct algorithm *algorithm)
+{
+    const size_t count = plugin->theirs.setting_count;
+    const bool filter = plugin->filter.plan;
+    *algorithm = (struct algorithm){.name = plugin->name,
+                                    .origin = plugin->hash,
+                                    .summary = plugin->theirs.summary,
+                                    .reference = plugin->theirs.reference,
+                                    .traits = plugin->theirs.traits & (SAS_ANY_TRACK | SAS_APERTURE_LIMIT),
+                                    .options_size = count * (8 + TEXT_SIZE),
+                                    .params = plugin->params,
+                                    .method = plugin,
+                                    .plan = plugin_plan,
+                                    .execute = filter ? NULL : plugin_execute,
+                                    .filtered = filter ? plugin_filtered : NULL,
+                                    .filter = filter ? plugin_filter : NULL,
+                                    .work = plugin_work,
+                                    .destroy = plugin_destroy};
+}
+
+enum status plugin_adopt(const char *name, const char *origin, const struct sas_algorithm *theirs,
+                         struct plugin *plugin, struct algorithm *algorithm)
+{
+    plugin->name = name;
+    snprintf(plugin->hash, sizeof plugin->hash, "%s", origin);
+    const enum status status = plugin_take(plugin, theirs);
+    if (status == STATUS_OK)
+        algorithm_fill(plugin, algorithm);
+    return status;
+}
+
 /* dlopen takes a name without a slash for one of the system's libraries. */
 static enum status plugin_make(const char *name, struct algorithm *algorithm)
 {
@@ -218,22 +249,7 @@ static enum status plugin_make(const char *name, struct algorithm *algorithm)
         free(plugin);
         return status;
     }
-    const size_t count = plugin->theirs.setting_count;
-    const bool filter = plugin->filter.plan;
-    *algorithm = (struct algorithm){.name = name,
-                                    .origin = plugin->hash,
-                                    .summary = plugin->theirs.summary,
-                                    .reference = plugin->theirs.reference,
-                                    .traits = plugin->theirs.traits & (SAS_ANY_TRACK | SAS_APERTURE_LIMIT),
-                                    .options_size = count * (8 + TEXT_SIZE),
-                                    .params = plugin->params,
-                                    .method = plugin,
-                                    .plan = plugin_plan,
-                                    .execute = filter ? NULL : plugin_execute,
-                                    .filtered = filter ? plugin_filtered : NULL,
-                                    .filter = filter ? plugin_filter : NULL,
-                                    .work = plugin_work,
-                                    .destroy = plugin_destroy};
+    algorithm_fill(plugin, algorithm);
     return STATUS_OK;
 }
 
