@@ -14,11 +14,11 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
                 "algorithms/wavenumber algorithms/methods harness/text harness/files " \
                 "harness/echoes harness/convert harness/scene harness/metrics harness/guests harness/imaging harness/conformance harness/choice harness/results harness/measure harness/show " \
                 "harness/report harness/sweep harness/advise harness/ranks harness/run harness/bench harness/stability harness/gate " \
-                "harness/papers harness/claims harness/command harness/tests " \
+                "harness/papers harness/claims harness/library harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/echoes harness/tests/scene harness/tests/metrics " \
                 "harness/tests/imaging harness/tests/results harness/tests/measure harness/tests/show harness/tests/report " \
                 "harness/tests/sweep harness/tests/advise harness/tests/run harness/tests/bench harness/tests/stability harness/tests/gate " \
-                "harness/tests/claims harness/tests/command harness/tests/fuzz harness/tests/digits"
+                "harness/tests/claims harness/tests/library harness/tests/command harness/tests/fuzz harness/tests/digits"
         count = split(order, folder, " ")
         for (k = 1; k <= count; k++)
             rank[folder[k]] = k

@@ -1,0 +1,316 @@
+/* The library's scenes: from files and from arrays, their echoes and delays (libsasbench.h). */
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contract/delay.h"
+#include "echoes/echo_data.h"
+#include "echoes/noise.h"
+#include "files/hash.h"
+#include "library/library.h"
+#include "scene/simulate.h"
+
+static enum status show(struct sasbench_scene *out)
+{
+    const struct scene *scene = &out->scene;
+    const struct acquisition *a = &scene->acquisition;
+    out->grids = calloc((size_t)scene->patch_count, sizeof *out->grids);
+    if (!out->grids)
+        return status_set(STATUS_FAILED, "%s: no memory for %d patches", scene->name, scene->patch_count);
+    for (int k = 0; k < scene->patch_count; k++) {
+        const struct grid *g = &scene->patches[k];
+        out->grids[k] = (struct sas_grid){sizeof *out->grids, g->x_count, g->r_count, g->x_first,
+                                          g->x_step,          g->r_first, g->r_step,  g->angle_rad};
+    }
+    out->acquisition = (struct sas_acquisition){.size = sizeof out->acquisition,
+                                                .pings = a->pings,
+                                                .receivers = a->receivers,
+                                                .samples = a->samples,
+                                                .sound_speed_m_s = a->sound_speed,
+                                                .carrier_hz = a->fc,
+                                                .sampling_hz = a->fs,
+                                                .bandwidth_hz = a->bandwidth,
+                                                .t0_s = a->t0,
+                                                .tx_m = &a->tx->x,
+                                                .rx_m = &a->rx->x,
+                                                .velocity_m_s = &a->velocity->x,
+                                                .tx_length_m = a->tx_length,
+                                                .rx_length_m = a->rx_length,
+                                                .aperture_limit = a->aperture_limit,
+                                                .pulse_length = a->compressed ? 0 : a->pulse_length,
+                                                .pulse = (const double *)a->pulse};
+    out->shown = (struct sasbench_arrays){.size = sizeof out->shown,
+                                          .name = scene->name,
+                                          .acquisition = &out->acquisition,
+                                          .patch_count = scene->patch_count,
+                                          .point_count = scene->point_count,
+                                          .patches = out->grids,
+                                          .points = (const double *)scene->targets};
+    return STATUS_OK;
+}
+
+static struct grid grid_taken(const struct sas_grid *g)
+{
+    return (struct grid){g->x_first_m, g->x_step_m, g->x_count, g->r_first_m, g->r_step_m, g->r_count, g->angle_rad};
+}
+
+static enum status load(const struct sasbench *context, const void *name, struct scene *scene)
+{
+    return scene_load(name, context->scenes, scene);
+}
+
+struct file {
+    const char *path;
+    const struct sas_grid *grid;
+};
+
+static enum status read_file(const struct sasbench *context, const void *with, struct scene *scene)
+{
+    const struct file *file = with;
+    struct grid grid;
+    (void)context;
+    if (!file->grid)
+        return scene_from_echoes(file->path, NULL, file->path, scene);
+    grid = grid_taken(file->grid);
+    const enum status status = grid_check(&grid, "grid");
+    return status == STATUS_OK ? scene_from_echoes(file->path, &grid, "grid", scene) : status;
+}
+
+/* Compression divides by the replica's energy, whose squares must fit. */
+static enum status pulse_check(const char *name, const struct acquisition *a)
+{
+    const double largest = largest_part(a->pulse, (size_t)a->pulse_length);
+    return a->compressed || (largest >= 0x1p-20 && largest <= 0x1p20)
+               ? STATUS_OK
+               : status_set(STATUS_INVALID, "%s: the pulse's largest part is %g, must be 2^-20 to 2^20", name, largest);
+}
+
+static enum status acquisition_take(const char *name, const struct sas_acquisition *s, bool recorded,
+                                    struct acquisition *a)
+{
+    if (s->pings < 1 || s->receivers < 1 || s->samples < 2 || s->pulse_length < 0)
+        return status_set(
+            STATUS_INVALID,
+            "%s: %d pings, %d receivers, %d samples, %d samples of the pulse; must be at least 1, 1, 2, 0", name,
+            s->pings, s->receivers, s->samples, s->pulse_length);
+    *a = (struct acquisition){.sound_speed = s->sound_speed_m_s,
+                              .fc = s->carrier_hz,
+                              .fs = s->sampling_hz,
+                              .bandwidth = s->bandwidth_hz,
+                              .samples = s->samples,
+                              .receivers = s->receivers,
+                              .pings = s->pings,
+                              .tx_length = s->tx_length_m,
+                              .rx_length = s->rx_length_m,
+                              .echo_sine = recorded ? 0 : INFINITY,
+                              .noisy = recorded,
+                              .aperture_limit = s->aperture_limit,
+                              .compressed = s->pulse_length == 0,
+                              .pulse_length = s->pulse_length};
+    const enum status status = acquisition_allocate(a);
+    if (status != STATUS_OK)
+        return status;
+    const size_t pings = (size_t)s->pings, records = pings * (size_t)s->receivers;
+    memcpy(a->t0, s->t0_s, pings * sizeof *a->t0);
+    memcpy(a->tx, s->tx_m, pings * sizeof *a->tx);
+    memcpy(a->rx, s->rx_m, records * sizeof *a->rx);
+    memcpy(a->velocity, s->velocity_m_s, pings * sizeof *a->velocity);
+    if (s->pulse_length > 0)
+        memcpy(a->pulse, s->pulse, (size_t)s->pulse_length * sizeof *a->pulse);
+    const enum status checked = acquisition_check(a, name);
+    return checked == STATUS_OK ? pulse_check(name, a) : checked;
+}
+
+static enum status image_take(const struct sasbench_arrays *arrays, struct scene *scene)
+{
+    if (arrays->patch_count < 1 || arrays->point_count < 0)
+        return status_set(STATUS_INVALID, "%s: %d patches and %d points, must be at least 1 and 0", scene->name,
+                          arrays->patch_count, arrays->point_count);
+    const size_t points = (size_t)arrays->point_count;
+    scene->patches = calloc((size_t)arrays->patch_count, sizeof *scene->patches);
+    scene->targets = calloc(points + 1, sizeof *scene->targets);
+    if (!scene->patches || !scene->targets)
+        return status_set(STATUS_FAILED, "%s: no memory for patches and points", scene->name);
+    for (; scene->patch_count < arrays->patch_count; scene->patch_count++) {
+        struct grid *grid = &scene->patches[scene->patch_count];
+        *grid = grid_taken(&arrays->patches[scene->patch_count]);
+        const enum status status = grid_check(grid, scene->name);
+        if (status != STATUS_OK)
+            return status;
+    }
+    for (size_t k = 0; k < 4 * points; k++)
+        if (!(fabs(arrays->points[k]) <= COORDINATE_MAX_M))
+            return status_set(STATUS_INVALID, "%s: point %zu has %g, must be a number of at most 1e12", scene->name,
+                              k / 4, arrays->points[k]);
+    if (points > 0)
+        memcpy(scene->targets, arrays->points, points * sizeof *scene->targets);
+    scene->point_count = scene->target_count = arrays->point_count;
+    return grid_meets_records(&scene->acquisition, scene->patch_count, scene->patches, scene->name);
+}
+
+static enum status echoes_take(const double *samples, struct scene *scene)
+{
+    struct acquisition *a = &scene->acquisition;
+    if (!samples) {
+        a->noise = noise_of_targets(a, scene->target_count, scene->targets, 0);
+        return STATUS_OK;
+    }
+    const struct echoes given = {a, PRECISION_DOUBLE, samples, 0};
+    struct echoes kept;
+    enum status status = samples_check(a, PRECISION_DOUBLE, samples);
+    if (status == STATUS_OK)
+        status = echoes_allocate(a, PRECISION_DOUBLE, &kept);
+    if (status != STATUS_OK)
+        return status;
+    memcpy((void *)kept.samples, samples,
+           size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, sizeof(double complex)));
+    scene->recorded = (double complex *)kept.samples;
+    return noise_measure(&given, &a->noise);
+}
+
+/* Names stand in rows of CSV files and in messages. */
+static enum status name_take(const char *name, struct scene *scene)
+{
+    bool plain = *name && strlen(name) <= 200;
+    for (const char *at = name; *at && plain; at++)
+        plain = isprint((unsigned char)*at);
+    if (!plain)
+        return status_set(STATUS_INVALID, "a scene's name has %zu characters, must be 1 to 200 printable ones",
+                          strlen(name));
+    scene->name = strdup(name);
+    scene->path = strdup("");
+    scene->description = strdup("made of arrays");
+    return scene->name && scene->path && scene->description ? STATUS_OK : status_set(STATUS_FAILED, "no memory");
+}
+
+static enum status make(const struct sasbench *context, const void *with, struct scene *scene)
+{
+    const struct sasbench_arrays *arrays = with;
+    (void)context;
+    *scene = (struct scene){.hash = HASH_BEGIN, .beam = {.kind = BEAM_RECT, .truncation = TRUNCATION_NONE}};
+    enum status status = name_take(arrays->name, scene);
+    if (status == STATUS_OK)
+        status = acquisition_take(scene->name, arrays->acquisition, arrays->samples, &scene->acquisition);
+    if (status == STATUS_OK)
+        status = image_take(arrays, scene);
+    if (status == STATUS_OK)
+        status = echoes_take(arrays->samples, scene);
+    scene->pulse_kind = scene->acquisition.compressed ? PULSE_FLAT : PULSE_LFM;
+    if (status != STATUS_OK)
+        scene_free(scene);
+    return status;
+}
+
+static int scene_take(struct sasbench *context,
+                      enum status (*taker)(const struct sasbench *context, const void *with, struct scene *scene),
+                      const void *with, struct sasbench_scene **scene)
+{
+    const int threads = turn_begin(context, TURN_ALONE);
+    struct sasbench_scene *made = calloc(1, sizeof *made);
+    enum status status = made ? STATUS_OK : status_set(STATUS_FAILED, "no memory for a scene");
+    if (status == STATUS_OK) {
+        made->context = context;
+        status = taker(context, with, &made->scene);
+        if (status == STATUS_OK)
+            status = show(made);
+        else
+            made->scene = (struct scene){0};
+    }
+    *scene = NULL;
+    if (status == STATUS_OK)
+        *scene = made;
+    else
+        sasbench_scene_free(made);
+    return turn_end(threads, status);
+}
+
+int sasbench_scene_load(struct sasbench *context, const char *name, struct sasbench_scene **scene)
+{
+    return scene_take(context, load, name, scene);
+}
+
+int sasbench_scene_read(struct sasbench *context, const char *path, const struct sas_grid *grid,
+                        struct sasbench_scene **scene)
+{
+    return scene_take(context, read_file, &(struct file){path, grid}, scene);
+}
+
+int sasbench_scene_make(struct sasbench *context, const struct sasbench_arrays *arrays, struct sasbench_scene **scene)
+{
+    return scene_take(context, make, arrays, scene);
+}
+
+const struct sasbench_arrays *sasbench_scene_arrays(const struct sasbench_scene *scene)
+{
+    return &scene->shown;
+}
+
+void sasbench_scene_free(struct sasbench_scene *scene)
+{
+    if (!scene)
+        return;
+    const int threads = turn_begin(scene->context, TURN_ALONE);
+    if (scene->ready)
+        session_close(&scene->session);
+    scene_free(&scene->scene);
+    free(scene->grids);
+    free(scene);
+    turn_end(threads, STATUS_OK);
+}
+
+/* Samples are divided by a power of two where numbers are extreme. */
+static enum status echoes_put(const struct echoes *echoes, void *samples)
+{
+    const struct acquisition *a = echoes->acquisition;
+    const size_t count = 2 * (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
+    if (echoes->exponent == 0) {
+        memcpy(samples, echoes->samples, count / 2 * precision_size(echoes->precision));
+        return STATUS_OK;
+    }
+    for (size_t k = 0; k < count; k++)
+        if (echoes->precision == PRECISION_DOUBLE)
+            ((double *)samples)[k] = ldexp(((const double *)echoes->samples)[k], echoes->exponent);
+        else
+            ((float *)samples)[k] = ldexpf(((const float *)echoes->samples)[k], echoes->exponent);
+    return samples_check(a, echoes->precision, samples);
+}
+
+int sasbench_echoes(struct sasbench_scene *scene, int precision, void *samples)
+{
+    const int threads = turn_begin(scene->context, TURN_ALONE);
+    struct echoes both = {0}, asked = {0};
+    enum status status = precision_check(precision);
+    if (status == STATUS_OK)
+        status = scene_echoes(&scene->scene, &both);
+    if (status == STATUS_OK && precision == SAS_FLOAT)
+        status = echoes_convert(&both, PRECISION_FLOAT, &asked);
+    if (status == STATUS_OK)
+        status = echoes_put(precision == SAS_FLOAT ? &asked : &both, samples);
+    echoes_free(&asked);
+    echoes_free(&both);
+    return turn_end(threads, status);
+}
+
+int sasbench_delays(const struct sasbench_scene *scene, size_t count, const double *points, double *delays)
+{
+    const struct acquisition *a = &scene->scene.acquisition;
+    const long long records = (long long)a->pings * a->receivers;
+    const int threads = turn_begin(scene->context, TURN_BESIDE);
+    enum status status = STATUS_OK;
+    for (size_t k = 0; k < 3 * count && status == STATUS_OK; k++)
+        if (!isfinite(points[k]))
+            status =
+                status_set(STATUS_INVALID, "delays: point %zu has %g; finite numbers are needed", k / 3, points[k]);
+    if (status == STATUS_OK) {
+#pragma omp parallel for
+        for (long long n = 0; n < records; n++) {
+            const long long p = n / a->receivers;
+            for (size_t k = 0; k < count; k++)
+                delays[(size_t)n * count + k] =
+                    delay_exact(a->tx[p], a->rx[n], a->velocity[p],
+                                (struct vector){points[3 * k], points[3 * k + 1], points[3 * k + 2]}, a->sound_speed);
+        }
+    }
+    return turn_end(threads, status);
+}

@@ -1,0 +1,38 @@
+"""sasbench: imaging algorithms for multi-receiver synthetic aperture sonar, measured on identical echoes.
+
+    import sasbench
+
+    scene = sasbench.scene("study/quick")
+    echoes = sasbench.simulate(scene)                     # complex128 [pings, receivers, samples]
+    image = sasbench.image(scene, "bp_sinc", echoes)      # complex128 [rows, columns]
+    print(sasbench.score(scene, image)["error"])
+
+Units are m, s, Hz and rad. Images of a scene with several patches are lists, an image each. Failures raise
+sasbench.Error. docs/python.md has more.
+"""
+
+from .native import Error, Unsupported
+from .own import Algorithm, algorithm
+from .scenes import (
+    Acquisition,
+    Grid,
+    Plan,
+    Scene,
+    algorithms,
+    image,
+    load,
+    make,
+    plan,
+    reference,
+    scene,
+    simulate,
+    threads,
+    version,
+)
+from .tables import run, score, targets
+
+__version__ = version()
+__all__ = [
+    "Acquisition", "Algorithm", "Error", "Grid", "Plan", "Scene", "Unsupported", "algorithm", "algorithms", "image",
+    "load", "make", "plan", "reference", "run", "scene", "score", "simulate", "targets", "threads",
+]  # fmt: skip
