@@ -184,10 +184,21 @@ static enum status name_take(const char *name, struct scene *scene)
     return scene->name && scene->path && scene->description ? STATUS_OK : status_set(STATUS_FAILED, "no memory");
 }
 
+/* Is all there that must be? */
+static bool arrays_whole(const struct sasbench_arrays *arrays)
+{
+    const struct sas_acquisition *a = arrays->acquisition;
+    return arrays->size == sizeof *arrays && arrays->name && arrays->patches
+           && (arrays->points || arrays->point_count <= 0) && a && a->size == sizeof *a && a->t0_s && a->tx_m && a->rx_m
+           && a->velocity_m_s && (a->pulse || a->pulse_length <= 0);
+}
+
 static enum status make(const struct sasbench *context, const void *with, struct scene *scene)
 {
     const struct sasbench_arrays *arrays = with;
     (void)context;
+    if (!arrays_whole(arrays))
+        return status_set(STATUS_INVALID, "a scene of arrays lacks one that its counts need, its name or its size");
     *scene = (struct scene){.hash = HASH_BEGIN, .beam = {.kind = BEAM_RECT, .truncation = TRUNCATION_NONE}};
     enum status status = name_take(arrays->name, scene);
     if (status == STATUS_OK)

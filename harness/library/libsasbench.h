@@ -53,8 +53,8 @@ int sasbench_scene_load(struct sasbench *context, const char *name, struct sasbe
 int sasbench_scene_read(struct sasbench *context, const char *path, const struct sas_grid *grid,
                         struct sasbench_scene **scene);
 /* A scene of arrays, copied. `samples`: the echoes, double [pings][receivers][samples][2]; NULL: they are simulated, of
-   `points` [point_count][4], x, r, and the amplitude's real and imaginary part, seen from everywhere alike. With samples
-   the points are those that are measured. Errors: SAS_INVALID naming number, value and what is accepted. */
+   `points` [point_count][4], x, r, and the amplitude's real and imaginary part, seen from everywhere alike. With
+   samples the points are those that are measured. Errors: SAS_INVALID naming number, value and what is accepted. */
 struct sasbench_arrays {
     uint32_t size;    /* sizeof(struct sasbench_arrays) */
     const char *name; /* of rows and messages */
@@ -107,8 +107,8 @@ int sasbench_score(struct sasbench_scene *scene, const char *name, int precision
                    double seconds, struct sasbench_table *table);
 /* Measure an algorithm as `sasbench run`, and add its rows; without `timed` the image is formed once, without times.
    `own` NULL: that of a SPEC, in single precision where it names none. Else `spec` is a name for `own`, in `precision`:
-   its plan's pairs and FLOPs do not count, and `work` is not called. A refusal or a failure of the algorithm is a row as
-   well. While it is timed nothing else should run. Errors: SAS_INVALID for the SPEC, SAS_FAILED. */
+   its plan's pairs and FLOPs do not count, and `work` is not called. A refusal or a failure of the algorithm is a row
+   as well. While it is timed nothing else should run. Errors: SAS_INVALID for the SPEC, SAS_FAILED. */
 int sasbench_run(struct sasbench_scene *scene, const char *spec, int precision, const struct sas_algorithm *own,
                  int timed, struct sasbench_table *table);
 

@@ -240,7 +240,10 @@ def make(
         a.tx_length, a.rx_length, a.aperture_limit, pulse.size, put(pulse, (pulse.size,), "pulse", np.complex128),
     )  # fmt: skip
     grids = [grids] if isinstance(grids, Grid) else list(grids)
-    points = np.asarray(points, dtype=np.float64).reshape(-1, 4) if np.size(points) % 4 == 0 else np.asarray(points)
+    points = np.asarray(points, dtype=np.float64)
+    points = points.reshape(-1, 4) if points.size == 0 or points.shape == (4,) else points
+    if points.ndim != 2:
+        raise native.Error(f"points: the shape is {points.shape}, must be [n, 4]")
     if echoes is not None:
         echoes = checked(echoes, (pings, receivers, samples), "echoes").astype(np.complex128, copy=False)
     arrays = native.Arrays(

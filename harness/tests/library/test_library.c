@@ -142,6 +142,8 @@ static void scenes_are_made_of_arrays(void **state)
     assert_int_equal(sasbench_scene_make(context, &arrays, &none), SAS_INVALID);
     assert_null(none);
     assert_non_null(strstr(sasbench_message(), "study/quick"));
+    acquisition.rx_m = NULL;
+    assert_int_equal(sasbench_scene_make(context, &arrays, &none), SAS_INVALID);
     free(samples);
     free(pixels);
     sasbench_scene_free(scene);

@@ -1,0 +1,217 @@
+"""The Python package: its images against those of the program, its errors, algorithms of one's own."""
+
+import concurrent.futures
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: python3-numpy is not installed")
+    sys.exit(77)
+
+import matlab
+import sasbench
+
+SPECS = [
+    "bp_nearest", "bp_linear", "bp_sinc:taps=8", "bp_zeropad", "bp_farrow", "bp_fitted", "bp_factorised", "rma_lbf",
+    "rma_wu", "rma_delay", "monostatic | wk_squint", "reference",
+]  # fmt: skip
+
+
+def program(*arguments):
+    return subprocess.run([os.environ["SASBENCH_PROGRAM"], *arguments], check=True, capture_output=True, text=True)
+
+
+@sasbench.algorithm(dtype=np.complex128)
+def nearest(a, grid):
+    """bp_nearest again."""
+    delays = a.delay(grid.points())
+    q = np.rint((delays - a.t0[:, None, None, None]) * a.fs).astype(int)
+    factors = np.exp(2j * np.pi * a.fc * delays) * ((q >= 0) & (q < a.samples))
+    ping, receiver = np.ogrid[: a.shape[0], : a.shape[1]]
+    places = ping[..., None, None], receiver[..., None, None], q.clip(0, a.samples - 1)
+    return lambda echoes: (a.compress(echoes)[places] * factors).sum((0, 1))
+
+
+class Python(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.scene = sasbench.scene("study/quick")
+        cls.echoes = sasbench.simulate(cls.scene)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def of_program(self, k, spec, *source):
+        path = self.path(f"{k}.mat")
+        program("image", *source, "-a", spec, "-o", path)
+        return matlab.variables(path)["image"]
+
+    def assert_same(self, image, other):
+        self.assertEqual(image.dtype, other.dtype)
+        self.assertEqual(image.tobytes(), np.ascontiguousarray(other).tobytes())
+
+    def test_images_are_the_programs(self):
+        """To the bit, in both precisions, formed in two threads at once."""
+        asked = [f"{s}{',' if ':' in s else ':'}precision={p}" for s in SPECS for p in ("float", "double")]
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            images = list(pool.map(lambda spec: sasbench.image(self.scene, spec), asked))
+        for k, (spec, image) in enumerate(zip(asked, images)):
+            with self.subTest(spec):
+                self.assert_same(image, self.of_program(k, spec, "--scene", "study/quick"))
+
+    def test_dtype_follows_the_echoes(self):
+        single = sasbench.image(self.scene, "bp_sinc", self.echoes.astype(np.complex64))
+        self.assert_same(single, sasbench.image(self.scene, "bp_sinc"))
+        self.assertEqual(sasbench.image(self.scene, "bp_sinc", self.echoes).dtype, np.complex128)
+        self.assertEqual(sasbench.image(self.scene, "bp_sinc:precision=float", self.echoes).dtype, np.complex64)
+
+    def test_files_are_the_programs(self):
+        path = self.path("echoes.mat")
+        program("simulate", "study/quick", "-o", path)
+        samples = matlab.variables(path)["samples"]
+        self.assert_same(self.echoes, np.transpose(samples, (2, 1, 0)))
+        read = sasbench.load(path)
+        self.assert_same(sasbench.simulate(read), self.echoes)
+        image = self.of_program("file", "bp_sinc:precision=double", "--echoes", path)
+        self.assert_same(sasbench.image(read, "bp_sinc:precision=double"), image)
+        part = sasbench.Grid(-0.1, 0.05, 5, 19.9, 0.05, 4)
+        self.assertEqual(sasbench.image(sasbench.load(path, part), "bp_sinc").shape, (4, 5))
+
+    def test_scores_are_the_programs(self):
+        program("image", "--scene", "study/quick", "-a", "bp_linear", "-o", self.path("i.mat"))
+        program("score", self.path("i.mat"), "study/quick", "-o", self.path("scores"), "--name", "mine")
+        with open(self.path("scores/measurements.csv")) as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        row = sasbench.score(self.scene, sasbench.image(self.scene, "bp_linear"), "mine")
+        self.assertEqual(list(row.dtype.names), list(rows[0]))
+        for name in ("error", "error_gain", "phase_rms_rad", "width_m", "pslr_db", "islr_db", "entropy"):
+            self.assertAlmostEqual(row[name] / float(rows[0][name]), 1, delta=1e-6, msg=name)
+        self.assertEqual(row["algorithm"], "mine")
+
+    def test_scenes_of_arrays(self):
+        made = sasbench.make(self.scene.acquisition, self.scene.grid, self.echoes, self.scene.points, "made")
+        self.assert_same(sasbench.image(made, "bp_sinc"), sasbench.image(self.scene, "bp_sinc"))
+        self.assertLess(sasbench.score(made, sasbench.reference(made))["error"], 1e-15)
+        points = np.array([[0, 20, 1, 0], [0.1, 20.1, 0, 2.0]])
+        both, first, second = (
+            sasbench.simulate(sasbench.make(self.scene.acquisition, self.scene.grid, points=p))
+            for p in (points, points[0], points[1])
+        )
+        self.assertLess(np.abs(both - first - second).max(), 1e-12 * np.abs(both).max())
+
+    def test_delays(self):
+        a, point = self.scene.acquisition, np.array([0.3, 20.0, -1.0])
+        delays = a.delay(point)
+        back = a.rx + a.velocity[:, None] * delays[..., None]
+        way = np.linalg.norm(a.tx - point, axis=-1)[:, None] + np.linalg.norm(back - point, axis=-1)
+        self.assertLess(np.abs(delays - way / a.sound_speed).max(), 1e-15)
+
+    def test_plans_are_used_again(self):
+        plan = sasbench.plan(self.scene, "rma_lbf", np.complex128)
+        out = np.empty(self.scene.grid.shape, np.complex128)
+        self.assertIs(plan.execute(self.echoes, out), out)
+        twice = plan.execute(2 * self.echoes)
+        self.assert_same(twice, 2 * out)
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            for image in pool.map(lambda _: plan.execute(self.echoes), range(4)):
+                self.assert_same(image, out)
+        with self.assertRaisesRegex(sasbench.Error, "^out: must be C-contiguous, writeable, and complex128$"):
+            plan.execute(self.echoes, out[:, ::-1])
+
+    def test_own_algorithms_are_measured(self):
+        @sasbench.algorithm
+        def refuses(a, grid):
+            raise sasbench.Unsupported("too many pings")
+
+        @sasbench.algorithm
+        def fails(a, grid):
+            return lambda echoes: echoes[1000]
+
+        @sasbench.algorithm
+        def misshapes(a, grid):
+            return lambda echoes: echoes
+
+        @sasbench.algorithm
+        def nests(a, grid):
+            sasbench.run(self.scene, "bp_sinc", timed=False)
+
+        rows = sasbench.run(self.scene, ["bp_sinc", nearest, refuses, fails, misshapes, nests], timed=False)
+        self.assertEqual(list(rows["status"]), ["ok", "ok", "unsupported", "failed", "failed", "failed"])
+        self.assertEqual(rows["reason"][2], "refuses: too many pings")
+        self.assertIn("fails: IndexError in line ", rows["reason"][3])
+        self.assertIn("shape is (18, 8, 256), must be (13, 61)", rows["reason"][4])
+        self.assertIn("cannot measure", rows["reason"][5])
+        self.assertEqual(set(rows.targets["algorithm"]), {"bp_sinc", "nearest"})
+        timed = sasbench.run(self.scene, nearest)
+        self.assertGreater(timed["run_s"][0], 0)
+        image = sasbench.image(self.scene, nearest, self.echoes)
+        self.assertAlmostEqual(sasbench.score(self.scene, image)["error"], rows["error"][1], delta=1e-12)
+        same = sasbench.image(self.scene, "bp_nearest", self.echoes)
+        self.assertLess(np.abs(image - same).max(), 1e-10 * np.abs(same).max())
+
+        @sasbench.algorithm
+        def interrupted(a, grid):
+            raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            sasbench.run(self.scene, interrupted, timed=False)
+
+    def test_errors(self):
+        nan = self.echoes.copy()
+        nan[1, 2, 3] = np.nan
+        a, grid = self.scene.acquisition, self.scene.grid
+        for words, call in {
+            "there is no such scene; did you mean 'study/quick'?": lambda: sasbench.scene("study/quik"),
+            "unknown algorithm 'bp_sink'; did you mean 'bp_sinc'?": lambda: sasbench.image(self.scene, "bp_sink"),
+            "taps is '1'; accepted: ": lambda: sasbench.plan(self.scene, "bp_sinc:taps=1"),
+            "accepted": lambda: sasbench.image(self.scene, "bp_sinc\0x"),
+            "one_receiver": lambda: sasbench.image(self.scene, "wk_polar"),
+            "sample 3 of receiver 2 in ping 1 has nan": lambda: sasbench.image(self.scene, "bp_sinc", nan),
+            "must be (18, 8, 256)": lambda: sasbench.image(self.scene, "bp_sinc", self.echoes[:-1]),
+            "complex64 and complex128 are accepted": lambda: sasbench.image(self.scene, "bp_sinc", self.echoes.real),
+            "must be (13, 61)": lambda: sasbench.score(self.scene, self.echoes[0]),
+            "not finite": lambda: sasbench.score(self.scene, np.full(grid.shape, np.inf + 0j)),
+            "an algorithm of this library": lambda: sasbench.score(self.scene, sasbench.reference(self.scene), "bp_sinc"),
+            "no.mat: cannot be read": lambda: sasbench.load(self.path("no.mat")),
+            "must be 0 to 1024": lambda: sasbench.threads(-1),
+            "must end in 3": lambda: a.delay([1.0, 2.0]),
+            "finite numbers are needed": lambda: a.delay([np.inf, 0, 0]),
+            "at least 1 and 0": lambda: sasbench.make(a, []),
+            "tx: the shape is": lambda: sasbench.make(sasbench.Acquisition(
+                a.samples, a.sound_speed, a.fc, a.fs, a.bandwidth, a.t0, a.tx[:, :2], a.rx, a.velocity), grid),
+        }.items():  # fmt: skip
+            with self.subTest(words), self.assertRaises(sasbench.Error) as caught:
+                call()
+            if words != "accepted":
+                self.assertIn(words, str(caught.exception))
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_damaged_files_are_refused(self):
+        program("simulate", "study/quick", "-o", self.path("whole.mat"))
+        with open(self.path("whole.mat"), "rb") as file:
+            whole = file.read()
+        for length in (0, 100, 200, len(whole) // 2, len(whole) - 1):
+            with open(self.path("cut.mat"), "wb") as file:
+                file.write(whole[:length])
+            with self.assertRaisesRegex(sasbench.Error, "cut.mat: "):
+                sasbench.load(self.path("cut.mat"))
+
+    def test_algorithms_are_listed(self):
+        known = sasbench.algorithms()
+        self.assertEqual(known["bp_sinc"]["settings"]["taps"]["min"], 2)
+        self.assertIn("reference", known)
+
+
+if __name__ == "__main__":
+    unittest.main()
