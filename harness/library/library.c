@@ -1,6 +1,8 @@
 /* The library's contexts, messages and turns (libsasbench.h). */
 #define _GNU_SOURCE /* dladdr */
+#include <ctype.h>
 #include <dlfcn.h>
+#include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
@@ -46,6 +48,9 @@ int turn_end(int threads, enum status status)
 {
     if (status != STATUS_OK)
         snprintf(message, sizeof message, "%s", status_message());
+    for (char *at = message; *at; at++) /* a line, whatever names it quotes */
+        if (iscntrl((unsigned char)*at))
+            *at = '?';
     omp_set_num_threads(threads);
     if (--depth == 0)
         pthread_rwlock_unlock(&turns);
@@ -55,6 +60,11 @@ int turn_end(int threads, enum status status)
 bool turn_is_inner(void)
 {
     return depth > 1;
+}
+
+bool single_holds(double largest)
+{
+    return largest == 0 || (largest >= (double)FLT_MIN * 0x1p24 && largest <= (double)FLT_MAX);
 }
 
 enum status precision_check(int precision)

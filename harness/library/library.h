@@ -20,6 +20,7 @@ struct sasbench_scene {
     struct sasbench_arrays shown;
     struct sas_acquisition acquisition; /* of it */
     struct sas_grid *grids;             /* [patch_count] of it */
+    bool silent;                        /* neither echoes nor points */
     bool ready;                         /* for measurements */
     struct session session;
 };
@@ -34,8 +35,12 @@ int turn_end(int threads, enum status status);
 /* Is this thread within another call? */
 bool turn_is_inner(void);
 
-/* Errors: STATUS_INVALID for an int that is no precision; where a number [count] of complex ones is not finite. */
+/* Does single precision hold numbers whose largest part is this, with all digits of those 2^24 times smaller? */
+bool single_holds(double largest);
+/* Errors: STATUS_INVALID for an int that is no precision; where a number of the samples is not finite. */
 enum status precision_check(int precision);
+/* Errors: STATUS_INVALID where the scene is silent. */
+enum status scene_check(const struct sasbench_scene *scene);
 enum status samples_check(const struct acquisition *acquisition, enum precision precision, const void *samples);
 
 #endif

@@ -1,4 +1,5 @@
 /* The library's images, planned once and formed as often as wanted (libsasbench.h). */
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,24 +64,33 @@ int sasbench_plan_precision(const struct sasbench_plan *plan)
 }
 
 /* Images of extreme echoes are in double whatever the plan's precision. */
+static enum status image_fit(const struct sasbench_plan *plan, const struct image *image)
+{
+    double largest = 0;
+    for (int k = 0; k < image->patch_count; k++)
+        largest = fmax(largest, largest_part(image->pixels[k],
+                                             (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count));
+    return single_holds(largest)
+               ? STATUS_OK
+               : status_set(STATUS_INVALID,
+                            "%s: the image's largest part is %g, beyond single precision; double is needed",
+                            plan->spec.algorithm->name, largest);
+}
+
 static enum status image_put(const struct sasbench_plan *plan, const struct image *image, void *const *pixels)
 {
-    for (int k = 0; k < image->patch_count; k++) {
+    const bool convert = image->precision != plan->spec.precision;
+    const enum status status = convert ? image_fit(plan, image) : STATUS_OK;
+    for (int k = 0; k < image->patch_count && status == STATUS_OK; k++) {
         const size_t count = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count;
         const double *both = image->pixels[k];
         float *single = pixels[k];
-        if (image->precision == plan->spec.precision) {
+        if (!convert)
             memcpy(pixels[k], image->pixels[k], count * precision_size(image->precision));
-            continue;
-        }
-        for (size_t n = 0; n < 2 * count; n++) {
+        for (size_t n = 0; n < 2 * count && convert; n++)
             single[n] = (float)both[n];
-            if (!__builtin_isfinite(single[n]))
-                return status_set(STATUS_INVALID, "%s: the image has %g, beyond single precision; double is needed",
-                                  plan->spec.algorithm->name, both[n]);
-        }
     }
-    return STATUS_OK;
+    return status;
 }
 
 int sasbench_execute(struct sasbench_plan *plan, int precision, const void *samples, void *const *pixels)

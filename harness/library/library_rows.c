@@ -133,7 +133,9 @@ static enum status session_need(struct sasbench_scene *scene)
         return status_set(STATUS_INVALID, "%s: an algorithm that is measured cannot measure", scene->scene.name);
     if (scene->ready)
         return STATUS_OK;
-    const enum status status = session_open(&scene->scene, &scene->session);
+    enum status status = scene_check(scene);
+    if (status == STATUS_OK)
+        status = session_open(&scene->scene, &scene->session);
     scene->ready = status == STATUS_OK;
     return status;
 }

@@ -1,5 +1,6 @@
 /* The library's scenes: from files and from arrays, their echoes and delays (libsasbench.h). */
 #include <ctype.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -139,10 +140,12 @@ static enum status image_take(const struct sasbench_arrays *arrays, struct scene
         if (status != STATUS_OK)
             return status;
     }
-    for (size_t k = 0; k < 4 * points; k++)
-        if (!(fabs(arrays->points[k]) <= COORDINATE_MAX_M))
-            return status_set(STATUS_INVALID, "%s: point %zu has %g, must be a number of at most 1e12", scene->name,
-                              k / 4, arrays->points[k]);
+    for (size_t k = 0; k < 4 * points; k++) {
+        const double most = k % 4 < 2 ? COORDINATE_MAX_M : DBL_MAX;
+        if (!(fabs(arrays->points[k]) <= most))
+            return status_set(STATUS_INVALID, "%s: point %zu has %g, must be a number of at most %g", scene->name,
+                              k / 4, arrays->points[k], most);
+    }
     if (points > 0)
         memcpy(scene->targets, arrays->points, points * sizeof *scene->targets);
     scene->point_count = scene->target_count = arrays->point_count;
@@ -249,7 +252,10 @@ int sasbench_scene_read(struct sasbench *context, const char *path, const struct
 
 int sasbench_scene_make(struct sasbench *context, const struct sasbench_arrays *arrays, struct sasbench_scene **scene)
 {
-    return scene_take(context, make, arrays, scene);
+    const int status = scene_take(context, make, arrays, scene);
+    if (status == SAS_OK)
+        (*scene)->silent = !arrays->samples && arrays->point_count == 0;
+    return status;
 }
 
 const struct sasbench_arrays *sasbench_scene_arrays(const struct sasbench_scene *scene)
@@ -270,36 +276,44 @@ void sasbench_scene_free(struct sasbench_scene *scene)
     turn_end(threads, STATUS_OK);
 }
 
-/* Samples are divided by a power of two where numbers are extreme. */
-static enum status echoes_put(const struct echoes *echoes, void *samples)
+enum status scene_check(const struct sasbench_scene *scene)
 {
-    const struct acquisition *a = echoes->acquisition;
-    const size_t count = 2 * (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
-    if (echoes->exponent == 0) {
-        memcpy(samples, echoes->samples, count / 2 * precision_size(echoes->precision));
-        return STATUS_OK;
-    }
-    for (size_t k = 0; k < count; k++)
-        if (echoes->precision == PRECISION_DOUBLE)
-            ((double *)samples)[k] = ldexp(((const double *)echoes->samples)[k], echoes->exponent);
+    return scene->silent ? status_set(STATUS_INVALID, "%s: has neither echoes nor points; one of them is needed",
+                                      scene->scene.name)
+                         : STATUS_OK;
+}
+
+/* Echoes of extreme numbers are divided by a power of two. */
+static enum status echoes_put(const struct scene *scene, const struct echoes *both, int precision, void *samples)
+{
+    const struct acquisition *a = both->acquisition;
+    const size_t count = (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
+    const double *parts = both->samples, largest = ldexp(largest_part(both->samples, count), both->exponent);
+    if (!(largest < INFINITY) || (precision == SAS_FLOAT && !single_holds(largest)))
+        return status_set(STATUS_INVALID, "%s: the echoes' largest part is %g, beyond %s", scene->name, largest,
+                          precision == SAS_FLOAT ? "single precision; double is needed" : "double precision");
+    for (size_t k = 0; k < 2 * count; k++) {
+        const double part = both->exponent ? ldexp(parts[k], both->exponent) : parts[k];
+        if (precision == SAS_FLOAT)
+            ((float *)samples)[k] = (float)part;
         else
-            ((float *)samples)[k] = ldexpf(((const float *)echoes->samples)[k], echoes->exponent);
-    return samples_check(a, echoes->precision, samples);
+            ((double *)samples)[k] = part;
+    }
+    return STATUS_OK;
 }
 
 int sasbench_echoes(struct sasbench_scene *scene, int precision, void *samples)
 {
     const int threads = turn_begin(scene->context, TURN_ALONE);
-    struct echoes both = {0}, asked = {0};
+    struct echoes echoes = {0};
     enum status status = precision_check(precision);
     if (status == STATUS_OK)
-        status = scene_echoes(&scene->scene, &both);
-    if (status == STATUS_OK && precision == SAS_FLOAT)
-        status = echoes_convert(&both, PRECISION_FLOAT, &asked);
+        status = scene_check(scene);
     if (status == STATUS_OK)
-        status = echoes_put(precision == SAS_FLOAT ? &asked : &both, samples);
-    echoes_free(&asked);
-    echoes_free(&both);
+        status = scene_echoes(&scene->scene, &echoes);
+    if (status == STATUS_OK)
+        status = echoes_put(&scene->scene, &echoes, precision, samples);
+    echoes_free(&echoes);
     return turn_end(threads, status);
 }
 

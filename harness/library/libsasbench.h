@@ -53,8 +53,9 @@ int sasbench_scene_load(struct sasbench *context, const char *name, struct sasbe
 int sasbench_scene_read(struct sasbench *context, const char *path, const struct sas_grid *grid,
                         struct sasbench_scene **scene);
 /* A scene of arrays, copied. `samples`: the echoes, double [pings][receivers][samples][2]; NULL: they are simulated, of
-   `points` [point_count][4], x, r, and the amplitude's real and imaginary part, seen from everywhere alike. With
-   samples the points are those that are measured. Errors: SAS_INVALID naming number, value and what is accepted. */
+   `points` [point_count][4], x, r, and the amplitude's real and imaginary part, seen from everywhere alike; without
+   points as well only plans, whose samples are the caller's, and delays are made. With samples the points are those
+   that are measured. Errors: SAS_INVALID naming number, value and what is accepted. */
 struct sasbench_arrays {
     uint32_t size;    /* sizeof(struct sasbench_arrays) */
     const char *name; /* of rows and messages */
@@ -71,7 +72,7 @@ const struct sasbench_arrays *sasbench_scene_arrays(const struct sasbench_scene 
 void sasbench_scene_free(struct sasbench_scene *scene);
 
 /* The scene's echoes, recorded or simulated, into [pings][receivers][samples]. Errors: SAS_INVALID where one does not
-   fit the precision, SAS_FAILED without memory. */
+   fit the precision, or of a scene without samples and points; SAS_FAILED without memory. */
 int sasbench_echoes(struct sasbench_scene *scene, int precision, void *samples);
 /* The exact delays, s, of points [count][3], x, y, z, into [pings][receivers][count]. Errors: SAS_INVALID for points
    that are not finite. */

@@ -217,7 +217,8 @@ def make(
 ) -> Scene:
     """A scene of arrays, which are copied.
 
-    echoes: [P, N, samples] complex; None: they are simulated, of `points`, seen from everywhere alike. points: [n, 4]
+    echoes: [P, N, samples] complex; None: they are simulated, of `points`, seen from everywhere alike;
+    without points only images of echoes that are given, and delays, are made. points: [n, 4]
     x, r (m), and the amplitude's real and imaginary part; with echoes, those that are measured.
     """
     kept = []
