@@ -20,7 +20,13 @@ enum { THREADS_MOST = 1024 };
 
 static _Thread_local char message[1024];
 static _Thread_local int depth;
+static _Thread_local bool held;
+/* Images that others form one after the other keep nobody from a turn alone. */
+#ifdef PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP
+static pthread_rwlock_t turns = PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP;
+#else
 static pthread_rwlock_t turns = PTHREAD_RWLOCK_INITIALIZER;
+#endif
 
 const char *sasbench_version(void)
 {
@@ -35,10 +41,13 @@ const char *sasbench_message(void)
 int turn_begin(const struct sasbench *context, enum turn turn)
 {
     const int threads = omp_get_max_threads();
-    if (depth++ == 0 && turn == TURN_ALONE)
-        pthread_rwlock_wrlock(&turns);
-    else if (depth == 1)
-        pthread_rwlock_rdlock(&turns);
+    if (depth++ == 0) {
+        held = turn != TURN_NONE;
+        if (turn == TURN_ALONE)
+            pthread_rwlock_wrlock(&turns);
+        else if (held)
+            pthread_rwlock_rdlock(&turns);
+    }
     if (context)
         omp_set_num_threads(context->threads);
     return threads;
@@ -52,7 +61,7 @@ int turn_end(int threads, enum status status)
         if (iscntrl((unsigned char)*at))
             *at = '?';
     omp_set_num_threads(threads);
-    if (--depth == 0)
+    if (--depth == 0 && held)
         pthread_rwlock_unlock(&turns);
     return (int)status;
 }

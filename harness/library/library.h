@@ -25,8 +25,8 @@ struct sasbench_scene {
     struct session session;
 };
 
-/* What a call may do while others run: images are formed beside each other, all else alone. */
-enum turn { TURN_BESIDE, TURN_ALONE };
+/* What a call may do while others run: images are formed beside each other, delays at any time, all else alone. */
+enum turn { TURN_NONE, TURN_BESIDE, TURN_ALONE };
 /* Begin a call with the context's threads, wait for its turn; returns the caller's threads. An algorithm that is
    measured may call back in the same thread: that call has the turn of the outer one. */
 int turn_begin(const struct sasbench *context, enum turn turn);

@@ -27,7 +27,7 @@ struct sasbench_table {
 
 int sasbench_table(struct sasbench_table **table)
 {
-    const int threads = turn_begin(NULL, TURN_BESIDE);
+    const int threads = turn_begin(NULL, TURN_NONE);
     *table = calloc(1, sizeof **table);
     return turn_end(threads, *table ? STATUS_OK : status_set(STATUS_FAILED, "no memory for a table"));
 }

@@ -321,7 +321,7 @@ int sasbench_delays(const struct sasbench_scene *scene, size_t count, const doub
 {
     const struct acquisition *a = &scene->scene.acquisition;
     const long long records = (long long)a->pings * a->receivers;
-    const int threads = turn_begin(scene->context, TURN_BESIDE);
+    const int threads = turn_begin(scene->context, TURN_NONE);
     enum status status = STATUS_OK;
     for (size_t k = 0; k < 3 * count && status == STATUS_OK; k++)
         if (!isfinite(points[k]))

@@ -94,6 +94,29 @@ if command -v octave-cli >/dev/null && ! PATH=/usr/bin:/bin command -v sasbench 
     [ "$found" = "$prefix/bin/sasbench" ] || die "octave finds the program at: $found"
 fi
 
+# The library serves other programs, with the scenes that were moved with it.
+cat >use.c <<'END'
+#include <libsasbench.h>
+#include <stdio.h>
+int main(void)
+{
+    struct sasbench *context;
+    struct sasbench_scene *scene;
+    const int status = sasbench_open(1, NULL, &context);
+    if (status != SAS_OK || sasbench_scene_load(context, "study/installed", &scene) != SAS_OK)
+        return puts(sasbench_message()), 1;
+    printf("%d pings\n", sasbench_scene_arrays(scene)->acquisition->pings);
+    sasbench_scene_free(scene);
+    sasbench_close(context);
+    return 0;
+}
+END
+library=$(find "$prefix" -name libsasbench.so)
+cc -std=c11 -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" -o use use.c "$library"
+[ "$(LD_LIBRARY_PATH=$(dirname "$library") ./use)" = "18 pings" ] || die "libsasbench finds no scene"
+grep -q -- "-lsasbench" "$(find "$prefix" -name libsasbench.pc)" || die "no libsasbench.pc"
+[ -z "$(nm -D --defined-only "$library" | grep -v ' T sasbench_')" ] || die "libsasbench shows more than its functions"
+
 # A copy that is removed leaves nothing.
 DESTDIR=$folder/second meson install -C "$build" --no-rebuild --quiet >/dev/null 2>&1
 [ -n "$(find "$folder/second" -type f)" ] || die "nothing is installed the second time"

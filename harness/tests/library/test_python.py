@@ -158,6 +158,16 @@ class Python(unittest.TestCase):
         def nests(a, grid):
             sasbench.run(self.scene, "bp_sinc", timed=False)
 
+        @sasbench.algorithm
+        def calls(a, grid):
+            """Another scene and its plan, and delays in threads."""
+            plan = sasbench.plan(sasbench.scene("study/quick"), "bp_sinc")
+            with concurrent.futures.ThreadPoolExecutor(2) as pool:
+                list(pool.map(a.delay, [grid.points()] * 4))
+            return lambda echoes: plan.execute(echoes)
+
+        called = sasbench.run(self.scene, ["bp_sinc", calls], timed=False)
+        self.assertEqual(called["error"][0], called["error"][1])
         rows = sasbench.run(self.scene, ["bp_sinc", nearest, refuses, fails, misshapes, nests], timed=False)
         self.assertEqual(list(rows["status"]), ["ok", "ok", "unsupported", "failed", "failed", "failed"])
         self.assertEqual(rows["reason"][2], "refuses: too many pings")
