@@ -11,7 +11,7 @@
 
 enum { FILTERS_MOST = 3 };
 
-/* A data set as it lies in the file. Its handles stay open: the process that reads ends soon. */
+/* A data set as it lies in the file. */
 struct data_set {
     hid_t file, id, type, settings;
     hsize_t dims[H5S_MAX_RANK], chunk[H5S_MAX_RANK];
@@ -36,8 +36,19 @@ static bool set_open(const char *path, const struct stored *stored, struct data_
     const hid_t space = H5Dget_space(set->id);
     set->rank = H5Sget_simple_extent_dims(space, set->dims, NULL);
     set->needed = stored->count * H5Tget_size(set->type);
-    return set->rank >= 0 && set->settings >= 0 && set->needed > 0
-           && H5Sget_simple_extent_npoints(space) == (hssize_t)stored->count;
+    const bool fits = set->rank >= 0 && set->settings >= 0 && set->needed > 0
+                      && H5Sget_simple_extent_npoints(space) == (hssize_t)stored->count;
+    H5Sclose(space);
+    return fits;
+}
+
+/* Handles that were not opened are refused, silently. */
+static void set_close(const struct data_set *set)
+{
+    H5Pclose(set->settings);
+    H5Tclose(set->type);
+    H5Dclose(set->id);
+    H5Fclose(set->file);
 }
 
 /* Another file may be named by the data set, or by the name that led to it. */
@@ -150,23 +161,33 @@ static enum status chunks_check(const char *path, const char *name, struct data_
 
 bool mat73_has(const char *path, const char *name)
 {
-    return H5Lexists(H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), name, H5P_DEFAULT) > 0;
+    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    const bool has = H5Lexists(file, name, H5P_DEFAULT) > 0;
+    H5Fclose(file);
+    return has;
+}
+
+static enum status set_check(const char *path, const struct stored *stored, struct data_set *set)
+{
+    if (!set_open(path, stored, set)) {
+        return set_refuse(path, stored->name, "has another size than its dimensions");
+    }
+    if (is_elsewhere(set)) {
+        return set_refuse(path, stored->name, "is kept in another file");
+    }
+    if (H5Pget_layout(set->settings) == H5D_CHUNKED) {
+        return chunks_check(path, stored->name, set);
+    }
+    const size_t found = H5Dget_storage_size(set->id);
+    return found >= set->needed ? STATUS_OK : storage_refuse(path, stored->name, "", found, set->needed);
 }
 
 enum status mat73_check(const char *path, const struct stored *stored)
 {
     struct data_set set;
-    if (!set_open(path, stored, &set)) {
-        return set_refuse(path, stored->name, "has another size than its dimensions");
-    }
-    if (is_elsewhere(&set)) {
-        return set_refuse(path, stored->name, "is kept in another file");
-    }
-    if (H5Pget_layout(set.settings) == H5D_CHUNKED) {
-        return chunks_check(path, stored->name, &set);
-    }
-    const size_t found = H5Dget_storage_size(set.id);
-    return found >= set.needed ? STATUS_OK : storage_refuse(path, stored->name, "", found, set.needed);
+    const enum status status = set_check(path, stored, &set);
+    set_close(&set);
+    return status;
 }
 
 /* Complex numbers, or real ones, which are then spread. */
@@ -195,7 +216,7 @@ static bool slab_read(const struct data_set *set, hid_t space, hid_t room, size_
 bool mat73_read_pings(const char *path, const char *name, const struct pings *pings, const struct ping_run *run,
                       enum precision precision, void *values)
 {
-    static struct data_set set;
+    static struct data_set set; /* stays open: the process that reads ends soon */
     const struct stored stored = {name, run->each * (size_t)pings->count, true, false};
     if (!set.id && !set_open(path, &stored, &set))
         return false;

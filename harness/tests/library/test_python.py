@@ -232,6 +232,19 @@ class Python(unittest.TestCase):
             with self.assertRaisesRegex(sasbench.Error, "cut.mat: "):
                 sasbench.load(self.path("cut.mat"))
 
+    def test_files_are_read_anew(self):
+        """A file of version 7.3 that took another's place: nothing of that one is kept, nor stays open."""
+        seeds = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../fuzz/seeds/mat73")
+        grid = sasbench.Grid(0, 0.1, 3, 20, 0.1, 2)
+        handles = set()
+        for name, words in (("raw", "meets any record"), ("szip", "packed otherwise"), ("external", "in another file")):
+            with open(os.path.join(seeds, name), "rb") as seed, open(self.path("seed.mat"), "wb") as file:
+                file.write(seed.read()[:-1])  # the last byte selects the fuzzer's reader
+            with self.subTest(name), self.assertRaisesRegex(sasbench.Error, words):
+                sasbench.load(self.path("seed.mat"), grid)
+            handles.add(len(os.listdir("/proc/self/fd")))
+        self.assertEqual(len(handles), 1)
+
     def test_algorithms_are_listed(self):
         known = sasbench.algorithms()
         self.assertEqual(known["bp_sinc"]["settings"]["taps"]["min"], 2)
