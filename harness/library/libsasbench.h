@@ -14,8 +14,8 @@
      context outlives its scenes, a scene its plans. Arrays are read or written during the call only.
    - Threads: all functions may be called by several threads at once. Images by different plans are formed side by side;
      one plan forms one image at a time, delays wait for nothing, and everything else takes turns. An algorithm of the
-     caller's that is measured may call all but score and run, in threads of its own sasbench_delays alone. A program that plans with FFTW itself in
-     another thread calls fftw_make_planner_thread_safe first. */
+     caller's that is measured may call all but score and run, in threads of its own sasbench_delays alone. A program
+     that plans with FFTW itself in another thread calls fftw_make_planner_thread_safe first. */
 #ifndef LIBSASBENCH_H
 #define LIBSASBENCH_H
 

@@ -128,6 +128,11 @@ FUNCTIONS = {
     "run": (c_int, [c_void_p, c_char_p, c_int, POINTER(Algorithm), c_int, c_void_p]),
 }
 
+# Those that return a status.
+STATUSES = {name for name, (result, _) in FUNCTIONS.items() if result is c_int} - {
+    "setting", "plan_precision", "table_count",
+}  # fmt: skip
+
 
 def _load() -> ctypes.CDLL:
     """The library of SASBENCH_LIBRARY, the one beside this module, or the system's."""
@@ -148,13 +153,10 @@ _library = _load()
 def call(name: str, *arguments):
     """Call sasbench_NAME; a status that is not OK raises Error with the library's message."""
     result = getattr(_library, "sasbench_" + name)(*arguments)
-    if FUNCTIONS[name][0] is c_int and name in _STATUS and result != OK:
+    if name in STATUSES and result != OK:
         message = text(_library.sasbench_message())
         raise Unsupported(message) if result == UNSUPPORTED else Error(message, result)
     return result
-
-
-_STATUS = {"open", "scene_load", "scene_read", "scene_make", "echoes", "delays", "plan", "execute", "table", "score", "run"}
 
 
 def make(name: str, *arguments) -> c_void_p:

@@ -334,7 +334,7 @@ def reference(scene: Scene, echoes: Optional[np.ndarray] = None) -> Image:
 
 
 def algorithms() -> dict[str, dict]:
-    """By name: `summary`, `reference`, and `settings`, by name: `summary`, `default`, and `choices` or `min` and `max`."""
+    """By name: summary, reference, and settings, by name: summary, default, and choices or min and max."""
     found: dict[str, dict] = {}
     summary, source, setting = c_char_p(), c_char_p(), native.Setting()
     while name := native.call("algorithm", len(found), byref(summary), byref(source)):

@@ -92,7 +92,8 @@ def run(
     """Measure algorithms, SPECs or those of one's own, on scenes, as `sasbench run`; returns a row for each pair.
 
     A refusal is a row as well: `status` "unsupported" or "failed", and the `reason`. `timed` False forms each image
-    once, without times. The rows' attribute `targets` has those of the point targets. Nothing else should run meanwhile.
+    once, without times. The rows' attribute `targets` has those of the point targets. Nothing else should run
+    meanwhile.
     """
     listed = [scene] if isinstance(scene, (scenes.Scene, str)) else list(scene)
     listed = [scenes.scene(s) if isinstance(s, str) else s for s in listed]
