@@ -72,10 +72,10 @@ static enum status read_file(const struct sasbench *context, const void *with, s
     struct grid grid;
     (void)context;
     if (!file->grid)
-        return scene_from_echoes(file->path, NULL, file->path, scene);
+        return scene_from_echoes(file->path, NULL, file->path, true, scene);
     grid = grid_taken(file->grid);
     const enum status status = grid_check(&grid, "grid");
-    return status == STATUS_OK ? scene_from_echoes(file->path, &grid, "grid", scene) : status;
+    return status == STATUS_OK ? scene_from_echoes(file->path, &grid, "grid", true, scene) : status;
 }
 
 /* Compression divides by the replica's energy, whose squares must fit. */
