@@ -22,7 +22,7 @@
 #define FORM_OF_GRID "must be xmin:xstep:xcount,rmin:rstep:rcount"
 
 static const struct refusal usages[] = {
-    {{NULL}, {"is not a command", "accepted: run, report, list, info, check, plan, scenes, simulate, image"}},
+    {{NULL}, {"is not a command", "accepted: run, report, list, info, check, plan, scenes, simulate, convert, image"}},
     {{""}, {"'' is not a command", "accepted: run, report, list"}},
     {{"focus"}, {"'focus' is not a command", "accepted: run, report, list"}},
     {{"help", "focus"}, {"'focus' is not a command", "accepted: run, report, list"}},
