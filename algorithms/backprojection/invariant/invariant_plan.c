@@ -324,7 +324,7 @@ static void pieces_plan(const struct bp *bp, struct bp_raster *raster)
     raster->reach = limit > 0 && mach <= BP_SLOW ? piece_reach(mach, limit * c / (2 * M_PI * frequency)) : 0;
 }
 
-/* The wanted columns, and those that a block of vectors may sum beside them. Returns the number of columns with sums. */
+/* The wanted columns, and those that a block of vectors may sum beside them. Returns the number of those with sums. */
 static int columns_plan(struct bp_raster *raster, const struct pixel_window *w)
 {
     enum { BESIDE = BP_BLOCK_VECTORS * BP_LANES_MOST };
