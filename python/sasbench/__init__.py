@@ -13,6 +13,7 @@ sasbench.Error. docs/python.md has more.
 
 from .native import Error, Unsupported
 from .own import Algorithm, algorithm
+from .pictures import front, show
 from .scenes import (
     Acquisition,
     Grid,
@@ -33,6 +34,6 @@ from .tables import run, score, targets
 
 __version__ = version()
 __all__ = [
-    "Acquisition", "Algorithm", "Error", "Grid", "Plan", "Scene", "Unsupported", "algorithm", "algorithms", "image",
-    "load", "make", "plan", "reference", "run", "scene", "score", "simulate", "targets", "threads",
+    "Acquisition", "Algorithm", "Error", "Grid", "Plan", "Scene", "Unsupported", "algorithm", "algorithms", "front",
+    "image", "load", "make", "plan", "reference", "run", "scene", "score", "show", "simulate", "targets", "threads",
 ]  # fmt: skip

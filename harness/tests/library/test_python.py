@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import csv
+import importlib.util
 import os
 import subprocess
 import sys
@@ -109,6 +110,39 @@ class Python(unittest.TestCase):
             for p in (points, points[0], points[1])
         )
         self.assertLess(np.abs(both - first - second).max(), 1e-12 * np.abs(both).max())
+
+    @unittest.skipIf(importlib.util.find_spec("matplotlib") is None, "python3-matplotlib is not installed")
+    def test_pictures(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        image = sasbench.image(self.scene, "bp_sinc")
+        axes = sasbench.show(image, self.scene)
+        (drawn,) = axes.get_images()
+        self.assertEqual(drawn.get_clim(), (-60, 0))
+        self.assertEqual(np.argmax(drawn.get_array()), np.argmax(np.abs(image)))
+        self.assertAlmostEqual(drawn.get_array()[0, 0], 20 * np.log10(abs(image[0, 0]) / np.abs(image).max()), places=4)
+        grid = self.scene.grid
+        left, right, low, high = drawn.get_extent()
+        self.assertAlmostEqual(left + grid.x_step / 2, grid.x[0])
+        self.assertAlmostEqual(right - left, grid.x_count * grid.x_step)
+        self.assertAlmostEqual(high - low, grid.r_count * grid.r_step)
+        self.assertLess(sasbench.show(0 * image, grid).get_images()[0].get_array().max(), -60)
+        sasbench.show(np.array([[1e-300j]]), sasbench.Grid(-0.0, 0.1, 1, 20, 0.1, 1, 0.5)).figure.canvas.draw()
+        for call in (
+            lambda: sasbench.show(image * np.nan, grid),
+            lambda: sasbench.show(image[1:], grid),
+            lambda: sasbench.show(image, grid, range_db=0),
+        ):
+            self.assertRaises(sasbench.Error, call)
+        rows = sasbench.run(self.scene, ["bp_nearest", "bp_sinc", "bp_sinc:taps=2"])
+        rows["run_s"], rows["error"] = [1, 2, 3], [0.2, 0.1, 0.15]
+        line, *points = sasbench.front(rows).get_lines()
+        self.assertEqual(list(line.get_xdata()), [1, 2])
+        self.assertEqual([len(p.get_xdata()) for p in points], [1, 2])
+        rows["run_s"] = np.nan
+        self.assertRaises(sasbench.Error, lambda: sasbench.front(rows))
+        matplotlib.pyplot.close("all")
 
     def test_extreme_numbers(self):
         """As double they are the program's; single precision that would lose digits is refused."""
