@@ -1,6 +1,7 @@
 /* What the tests of `convert` share (convert_fixture.h). */
 #include "tests/command/convert_fixture.h"
 
+#include <hdf5.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

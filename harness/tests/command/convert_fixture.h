@@ -3,7 +3,7 @@
 #define SASBENCH_TEST_CONVERT_FIXTURE_H
 
 #include <complex.h>
-#include <hdf5.h>
+#include <stdint.h>
 
 #include "tests/command/program.h"
 
@@ -20,7 +20,8 @@ double pixel_r(const struct raster *raster, int pixel);
 void assert_image(const char *echoes, const struct raster *raster, const double complex *wanted);
 /* A file, behind a good one (NULL: alone), is refused for a field, in this process: its status has the message. */
 void assert_field_refused(const char *good, const char *bad, const char *field, const char *reason);
-/* Write a data set, its groups with it, in HDF5's order. */
-void set_write(hid_t file, const char *name, hid_t type, int rank, const hsize_t *dims, const void *values);
+/* Write a data set, its groups with it, in HDF5's order. Numbers are those of HDF5: hid_t, hsize_t. */
+void set_write(int64_t file, const char *name, int64_t type, int rank, const unsigned long long *dims,
+               const void *values);
 
 #endif

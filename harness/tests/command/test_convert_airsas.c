@@ -1,4 +1,5 @@
 /* `convert`: AirSAS recordings, against matched filters of their real samples in their own conventions. */
+#include <hdf5.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* `convert`: zea's ultrasound, real samples as well as I and Q, against delay and sum by its own conventions. */
+#include <hdf5.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
