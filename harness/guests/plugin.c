@@ -12,6 +12,7 @@
 #include "contract/param.h"
 #include "echoes/echo_data.h"
 #include "guests/plugin.h"
+#include "guests/shown.h"
 
 /* A plan: what they see of the problem, and what the host's functions need. */
 struct plugin_plan {
@@ -179,28 +180,9 @@ static void settings_show(struct plugin_plan *plan, const void *options, size_t 
 
 static void problem_show(struct plugin_plan *plan)
 {
-    const struct acquisition *a = plan->problem.acquisition;
-    plan->acquisition = (struct sas_acquisition){sizeof plan->acquisition,
-                                                 a->pings,
-                                                 a->receivers,
-                                                 a->samples,
-                                                 a->sound_speed,
-                                                 a->fc,
-                                                 a->fs,
-                                                 a->bandwidth,
-                                                 a->t0,
-                                                 &a->tx->x,
-                                                 &a->rx->x,
-                                                 &a->velocity->x,
-                                                 a->tx_length,
-                                                 a->rx_length,
-                                                 a->aperture_limit,
-                                                 a->compressed ? 0 : a->pulse_length,
-                                                 (const double *)a->pulse};
+    plan->acquisition = acquisition_show(plan->problem.acquisition);
     for (int k = 0; k < plan->problem.patch_count; k++) {
-        const struct grid *g = &plan->problem.patches[k];
-        plan->grids[k] = (struct sas_grid){
-            sizeof plan->grids[k], g->x_count, g->r_count, g->x_first, g->x_step, g->r_first, g->r_step, g->angle_rad};
+        plan->grids[k] = grid_show(&plan->problem.patches[k]);
         plan->patches[k] = &plan->grids[k];
     }
     plan->shown = (struct sas_problem){sizeof plan->shown,
@@ -272,46 +254,11 @@ enum status plugin_filter(void *data, const void *samples, void *filtered, struc
 enum status plugin_filtered(const void *data, struct acquisition *out)
 {
     const struct plugin_plan *plan = data;
-    const struct sas_acquisition *s = &plan->out;
-    const char *name = plan->plugin->name;
-    *out = (struct acquisition){0};
-    if (s->pings < 1 || s->receivers < 1 || s->samples < 2 || s->pulse_length < 0 || !s->t0_s || !s->tx_m || !s->rx_m
-        || !s->velocity_m_s || (s->pulse_length > 0 && !s->pulse))
-        return status_set(STATUS_FAILED,
-                          "%s: its echoes have %d pings, %d receivers, %d samples and a replica of %d samples, must be "
-                          "at least 1, 1, 2 and 0, with an array each",
-                          name, s->pings, s->receivers, s->samples, s->pulse_length);
-    const int replica = s->pulse_length;
     *out = *plan->problem.acquisition;
-    out->pings = s->pings;
-    out->receivers = s->receivers;
-    out->samples = s->samples;
-    out->sound_speed = s->sound_speed_m_s;
-    out->fc = s->carrier_hz;
-    out->fs = s->sampling_hz;
-    out->bandwidth = s->bandwidth_hz;
-    out->tx_length = s->tx_length_m;
-    out->rx_length = s->rx_length_m;
-    out->aperture_limit = s->aperture_limit;
-    out->pulse_length = replica;
-    out->compressed = replica == 0;
-    out->pri = s->pings == plan->problem.acquisition->pings ? out->pri : 0;
-    enum status status = acquisition_allocate(out);
-    if (status != STATUS_OK)
-        return status;
-    const size_t pings = (size_t)s->pings, records = pings * (size_t)s->receivers;
-    memcpy(out->t0, s->t0_s, pings * sizeof *out->t0);
-    memcpy(out->tx, s->tx_m, pings * sizeof *out->tx);
-    memcpy(out->rx, s->rx_m, records * sizeof *out->rx);
-    memcpy(out->velocity, s->velocity_m_s, pings * sizeof *out->velocity);
-    if (replica > 0)
-        memcpy(out->pulse, s->pulse, (size_t)replica * sizeof *out->pulse);
-    status = acquisition_check(out, name);
-    if (status != STATUS_OK) {
-        acquisition_free(out);
-        status = status_set(STATUS_FAILED, "its echoes are refused: %s", status_message());
-    }
-    return status;
+    out->pri = plan->out.pings == out->pings ? out->pri : 0;
+    return acquisition_take(plan->plugin->name, &plan->out, out) == STATUS_OK
+               ? STATUS_OK
+               : status_set(STATUS_FAILED, "its echoes are refused: %s", status_message());
 }
 
 struct work plugin_work(const void *data)

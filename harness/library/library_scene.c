@@ -9,38 +9,19 @@
 #include "echoes/echo_data.h"
 #include "echoes/noise.h"
 #include "files/hash.h"
+#include "guests/shown.h"
 #include "library/library.h"
 #include "scene/simulate.h"
 
 static enum status show(struct sasbench_scene *out)
 {
     const struct scene *scene = &out->scene;
-    const struct acquisition *a = &scene->acquisition;
     out->grids = calloc((size_t)scene->patch_count, sizeof *out->grids);
     if (!out->grids)
         return status_set(STATUS_FAILED, "%s: no memory for %d patches", scene->name, scene->patch_count);
-    for (int k = 0; k < scene->patch_count; k++) {
-        const struct grid *g = &scene->patches[k];
-        out->grids[k] = (struct sas_grid){sizeof *out->grids, g->x_count, g->r_count, g->x_first,
-                                          g->x_step,          g->r_first, g->r_step,  g->angle_rad};
-    }
-    out->acquisition = (struct sas_acquisition){.size = sizeof out->acquisition,
-                                                .pings = a->pings,
-                                                .receivers = a->receivers,
-                                                .samples = a->samples,
-                                                .sound_speed_m_s = a->sound_speed,
-                                                .carrier_hz = a->fc,
-                                                .sampling_hz = a->fs,
-                                                .bandwidth_hz = a->bandwidth,
-                                                .t0_s = a->t0,
-                                                .tx_m = &a->tx->x,
-                                                .rx_m = &a->rx->x,
-                                                .velocity_m_s = &a->velocity->x,
-                                                .tx_length_m = a->tx_length,
-                                                .rx_length_m = a->rx_length,
-                                                .aperture_limit = a->aperture_limit,
-                                                .pulse_length = a->compressed ? 0 : a->pulse_length,
-                                                .pulse = (const double *)a->pulse};
+    for (int k = 0; k < scene->patch_count; k++)
+        out->grids[k] = grid_show(&scene->patches[k]);
+    out->acquisition = acquisition_show(&scene->acquisition);
     out->shown = (struct sasbench_arrays){.size = sizeof out->shown,
                                           .name = scene->name,
                                           .acquisition = &out->acquisition,
@@ -85,42 +66,6 @@ static enum status pulse_check(const char *name, const struct acquisition *a)
     return a->compressed || (largest >= 0x1p-20 && largest <= 0x1p20)
                ? STATUS_OK
                : status_set(STATUS_INVALID, "%s: the pulse's largest part is %g, must be 2^-20 to 2^20", name, largest);
-}
-
-static enum status acquisition_take(const char *name, const struct sas_acquisition *s, bool recorded,
-                                    struct acquisition *a)
-{
-    if (s->pings < 1 || s->receivers < 1 || s->samples < 2 || s->pulse_length < 0)
-        return status_set(
-            STATUS_INVALID,
-            "%s: %d pings, %d receivers, %d samples, %d samples of the pulse; must be at least 1, 1, 2, 0", name,
-            s->pings, s->receivers, s->samples, s->pulse_length);
-    *a = (struct acquisition){.sound_speed = s->sound_speed_m_s,
-                              .fc = s->carrier_hz,
-                              .fs = s->sampling_hz,
-                              .bandwidth = s->bandwidth_hz,
-                              .samples = s->samples,
-                              .receivers = s->receivers,
-                              .pings = s->pings,
-                              .tx_length = s->tx_length_m,
-                              .rx_length = s->rx_length_m,
-                              .echo_sine = recorded ? 0 : INFINITY,
-                              .noisy = recorded,
-                              .aperture_limit = s->aperture_limit,
-                              .compressed = s->pulse_length == 0,
-                              .pulse_length = s->pulse_length};
-    const enum status status = acquisition_allocate(a);
-    if (status != STATUS_OK)
-        return status;
-    const size_t pings = (size_t)s->pings, records = pings * (size_t)s->receivers;
-    memcpy(a->t0, s->t0_s, pings * sizeof *a->t0);
-    memcpy(a->tx, s->tx_m, pings * sizeof *a->tx);
-    memcpy(a->rx, s->rx_m, records * sizeof *a->rx);
-    memcpy(a->velocity, s->velocity_m_s, pings * sizeof *a->velocity);
-    if (s->pulse_length > 0)
-        memcpy(a->pulse, s->pulse, (size_t)s->pulse_length * sizeof *a->pulse);
-    const enum status checked = acquisition_check(a, name);
-    return checked == STATUS_OK ? pulse_check(name, a) : checked;
 }
 
 static enum status image_take(const struct sasbench_arrays *arrays, struct scene *scene)
@@ -192,8 +137,7 @@ static bool arrays_whole(const struct sasbench_arrays *arrays)
 {
     const struct sas_acquisition *a = arrays->acquisition;
     return arrays->size == sizeof *arrays && arrays->name && arrays->patches
-           && (arrays->points || arrays->point_count <= 0) && a && a->size == sizeof *a && a->t0_s && a->tx_m && a->rx_m
-           && a->velocity_m_s && (a->pulse || a->pulse_length <= 0);
+           && (arrays->points || arrays->point_count <= 0) && a && a->size == sizeof *a;
 }
 
 static enum status make(const struct sasbench *context, const void *with, struct scene *scene)
@@ -202,10 +146,15 @@ static enum status make(const struct sasbench *context, const void *with, struct
     (void)context;
     if (!arrays_whole(arrays))
         return status_set(STATUS_INVALID, "a scene of arrays lacks one that its counts need, its name or its size");
-    *scene = (struct scene){.hash = HASH_BEGIN, .beam = {.kind = BEAM_RECT, .truncation = TRUNCATION_NONE}};
+    const bool recorded = arrays->samples;
+    *scene = (struct scene){.hash = HASH_BEGIN,
+                            .beam = {.kind = BEAM_RECT, .truncation = TRUNCATION_NONE},
+                            .acquisition = {.echo_sine = recorded ? 0 : INFINITY, .noisy = recorded}};
     enum status status = name_take(arrays->name, scene);
     if (status == STATUS_OK)
-        status = acquisition_take(scene->name, arrays->acquisition, arrays->samples, &scene->acquisition);
+        status = acquisition_take(scene->name, arrays->acquisition, &scene->acquisition);
+    if (status == STATUS_OK)
+        status = pulse_check(scene->name, &scene->acquisition);
     if (status == STATUS_OK)
         status = image_take(arrays, scene);
     if (status == STATUS_OK)

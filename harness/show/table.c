@@ -212,14 +212,19 @@ static void text_print(FILE *stream, const char *before, const char *text)
     print_wrapped(stream, 4, shown);
 }
 
-/* "warning: condition ghost: ..." becomes ghost. */
+/* "warning: condition ghost: ..." becomes ghost, "warning: target 5: ..." becomes target 5; others
+   have no name. */
 static void warned_names(char *text, size_t size)
 {
-    static const char condition[] = OUTCOME_WARNING "condition ";
+    static const char *const before[] = {OUTCOME_WARNING, "condition "};
     *text = '\0';
     for (const char *line = table.warned; *line; line += strcspn(line, "\n") + 1) {
-        const char *name = line + (strncmp(line, condition, strlen(condition)) == 0 ? strlen(condition) : 0);
-        text_append(text, size, "%s%.*s", *text ? ", " : "", (int)strcspn(name, ":\n"), name);
+        const char *name = line;
+        for (size_t k = 0; k < sizeof before / sizeof *before; k++)
+            name += strncmp(name, before[k], strlen(before[k])) == 0 ? strlen(before[k]) : 0;
+        const size_t length = strcspn(name, ":\n");
+        if (name[length] == ':')
+            text_append(text, size, "%s%.*s", *text ? ", " : "", (int)length, name);
     }
 }
 

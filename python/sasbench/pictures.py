@@ -16,11 +16,13 @@ FLOOR_DB = -6000.0  # a pixel that is zero; below any double
 
 
 def _axes(axes):
+    if axes is not None:
+        return axes
     try:
         import matplotlib.pyplot as plt
     except ImportError as error:
         raise native.Error("pictures need matplotlib: apt install python3-matplotlib, or pip install it") from error
-    return plt.subplots()[1] if axes is None else axes
+    return plt.subplots()[1]
 
 
 def show(

@@ -220,10 +220,11 @@ static struct amounts *pixels_counted(const struct factorised *plan)
     const struct tree *tree = &plan->tree;
     const int patches = tree->problem.patch_count, count = tree->first[tree->settings.stages] * patches;
     struct amounts *amounts = calloc((size_t)count, sizeof *amounts);
+    if (!amounts)
+        return NULL;
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < count; i++)
-        if (amounts)
-            amounts[i] = count_pixels(tree, i / patches, i % patches, tree->problem.estimate);
+        amounts[i] = count_pixels(tree, i / patches, i % patches, tree->problem.estimate);
     return amounts;
 }
 

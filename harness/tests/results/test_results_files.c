@@ -357,7 +357,8 @@ static void test_brief_table(void **state)
     struct measurement row = measurement_of("one", "bp_sinc");
     table_scene(stream, "one", "9 pixels");
     table_warning(stream, "warning: condition motion: rms is 2, limit 0.1");
-    row.reason = "warning: condition ghost: spacing is 2, limit 1; warning: times scatter: much";
+    row.reason = "warning: condition ghost: spacing is 2, limit 1; warning: times scatter: much; "
+                 "warning: target 5: no patch holds it; warning: 4 more targets likewise";
     table_row(stream, &row);
     table_row(stream, &row);
     row.status = "unsupported";
@@ -370,7 +371,7 @@ static void test_brief_table(void **state)
     table_scene_end(stream);
     unsetenv("COLUMNS");
     fclose(stream);
-    assert_string_equal(text, "one                       2 images, 1 refused, warned: motion, ghost\n"
+    assert_string_equal(text, "one                       2 images, 1 refused, warned: motion, ghost, target 5\n"
                               "  two: bp_sinc\n    failed: no memory\n"
                               "two                       0 images, 1 failed\n");
 }
