@@ -321,8 +321,9 @@ static double error_between_samples(const struct problem *problem, const struct 
                                                                                : NAN;
 }
 
-enum status bp_cost(const struct problem *problem, const struct interpolator *in, const struct bp_options *options,
-                    struct forecast *forecast)
+/* The forecast without the error law, which takes most of the time. */
+static enum status forecast_cost(const struct problem *problem, const struct interpolator *in,
+                                 const struct bp_options *options, struct forecast *forecast)
 {
     struct bp bp;
     *forecast = (struct forecast){.sums_pairs = true};
@@ -349,7 +350,7 @@ enum status bp_cost(const struct problem *problem, const struct interpolator *in
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const struct bp_options *options,
                         struct forecast *forecast)
 {
-    const enum status status = bp_cost(problem, in, options, forecast);
+    const enum status status = forecast_cost(problem, in, options, forecast);
     if (status != STATUS_OK)
         return status;
     const double law = error_between_samples(problem, in);
@@ -383,7 +384,7 @@ enum status bp_method_cost(const struct problem *problem, const void *given, con
     const struct bp_method *method = given;
     struct interpolator interpolator;
     const enum status status = method->make(problem, options, &interpolator);
-    return status == STATUS_OK ? bp_cost(problem, &interpolator, options, forecast) : status;
+    return status == STATUS_OK ? forecast_cost(problem, &interpolator, options, forecast) : status;
 }
 
 void bp_destroy(void *plan)

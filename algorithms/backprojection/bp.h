@@ -86,11 +86,8 @@ enum status bp_execute(void *plan, const struct echoes *echoes, struct image *im
 void bp_reads(const void *plan, bool *read);
 struct work bp_work(const void *plan);
 void bp_destroy(void *plan);
-/* The forecast of an interpolator: its error law, and delays and rounding of the engine that bp_plan would choose. The
-   second function leaves out the law, which takes most of the time. Errors: as bp_plan for the engine asked for, and
-   for the conditions; STATUS_FAILED without memory. */
-enum status bp_cost(const struct problem *problem, const struct interpolator *interpolator,
-                    const struct bp_options *options, struct forecast *forecast);
+/* The forecast of an interpolator: its error law, and delays and rounding of the engine that bp_plan would choose.
+   Errors: as bp_plan for the engine asked for, and for the conditions; STATUS_FAILED without memory. */
 enum status bp_forecast(const struct problem *problem, const struct interpolator *interpolator,
                         const struct bp_options *options, struct forecast *forecast);
 

@@ -108,7 +108,10 @@ double rma_focused(const struct acquisition *acquisition, const struct rma_bound
     return rma_reach(acquisition, bounds, r) + bounds->aside / 2;
 }
 
-bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high)
+/* The transmitter's places that echo a row at range r of a patch, from its columns: [*low, *high] m ahead of the pixel.
+   False where there are none. */
+static bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low,
+                              double *high)
 {
     double sine = view->beam_sine, reach = sine < 1 ? r * sine / sqrt((1 - sine) * (1 + sine)) : INFINITY;
     double last = patch->x_first + (patch->x_count - 1) * patch->x_step;

@@ -31,10 +31,6 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
    lowest frequency, or the stated end of echoes that do not taper. */
 double rma_widest_sine(const struct acquisition *acquisition);
 
-/* The transmitter's places that echo a row at range r of a patch, from its columns: [*low, *high] m ahead of the pixel.
-   False where there are none. */
-bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high);
-
 /* Append to list the requirements of every image by azimuth transforms (above_dc, uniform_track, pings, whole_aperture,
    in_front), and fill *track. False where one of them is not met. */
 bool azimuth_requirements(const struct problem *problem, struct condition *list, int *count,

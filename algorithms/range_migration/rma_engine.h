@@ -258,9 +258,6 @@ enum status rma_layout(struct rma *rma);
 enum status rma_delay_tables(struct rma *rma);
 /* Samples over which a cut of the records tapers. */
 int rma_taper(const struct acquisition *acquisition);
-/* Pings and zeros after them that rows up to `farthest` need whose columns lie `overhang` m beyond the track. */
-double rma_period(const struct acquisition *acquisition, const struct rma_bounds *bounds, double spacing,
-                  double farthest, double overhang);
 
 static inline double rma_last_row(const struct grid *grid)
 {

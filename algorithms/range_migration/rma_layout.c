@@ -182,10 +182,11 @@ static enum status lay_patches(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Zeros after the pings, as the period wraps around: targets focused beyond either end of the track, up to the widest
-   angle, must not reach a wanted column. */
-double rma_period(const struct acquisition *a, const struct rma_bounds *bounds, double spacing, double farthest,
-                  double overhang)
+/* Pings and zeros after them that rows up to `farthest` need whose columns lie `overhang` m beyond the track. The
+   period wraps around: targets focused beyond either end of the track, up to the widest angle, must not reach a wanted
+   column. */
+static double rma_period(const struct acquisition *a, const struct rma_bounds *bounds, double spacing, double farthest,
+                         double overhang)
 {
     const double angle = farthest * bounds->sine / sqrt(1 - bounds->sine * bounds->sine);
     const double reach = rma_reach(a, bounds, farthest), folds = reach < angle ? bounds->way + reach : 0;

@@ -11,8 +11,6 @@
    and imaging. */
 enum status machine_rates_measure(struct rates *rates);
 
-/* The file's path; empty where the environment names no folder. */
-void machine_rates_path(char *path, size_t size);
 /* Plan with the file's rates if they are plausible and of this machine, instruction set and program; *found (may be
    NULL): whether they are. Nothing else changes. */
 void machine_rates_use(bool *found);

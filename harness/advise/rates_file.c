@@ -13,7 +13,8 @@
 /* The file has the struct's numbers in their order: no other program reads it, and another build measures anew. */
 enum { RATES = sizeof(struct rates) / sizeof(double) };
 
-void machine_rates_path(char *path, size_t size)
+/* The file's path; empty where the environment names no folder. */
+static void rates_path(char *path, size_t size)
 {
     const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     *path = '\0';
@@ -38,7 +39,7 @@ void machine_rates_use(bool *found)
     double numbers[RATES] = {0};
     struct rates rates;
     bool whole = false;
-    machine_rates_path(path, sizeof path);
+    rates_path(path, sizeof path);
     owner_format(owner, sizeof owner);
     if (*path && csv_read(path, CSV_TAIL_DROP, &csv) == STATUS_OK) {
         const char *of = csv_comment(&csv, "machine");
@@ -62,7 +63,7 @@ enum status machine_rates_keep(const struct rates *rates)
     if (!rates_plausible(rates))
         return status_set(STATUS_FAILED, "the measured times are not plausible; the built-in rates are used");
     rates_set(rates);
-    machine_rates_path(path, sizeof path);
+    rates_path(path, sizeof path);
     if (!*path)
         return STATUS_OK;
     snprintf(directory, sizeof directory, "%.*s", (int)(strrchr(path, '/') - path), path);
@@ -94,7 +95,7 @@ enum status machine_rates_need(void)
     const bool kept = machine_rates_keep(&rates) == STATUS_OK;
     if (!kept)
         fprintf(stderr, "sasbench: warning: this machine's rates are not kept: %s\n", status_message());
-    machine_rates_path(path, sizeof path);
+    rates_path(path, sizeof path);
     fprintf(stderr, "sasbench: measured this machine's rates, to %.0f %%; kept in %s\n", 100 * rates_get()->noise,
             kept && *path ? path : "nothing");
     return STATUS_OK;

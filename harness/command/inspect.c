@@ -70,7 +70,10 @@ static void resolutions_lower(const struct acquisition *a, const struct grid *gr
             *r = fmin(*r, 2 * grid->r_step / list[k].value);
 }
 
-bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
+/* Propose a grid that shows the recording: on a straight track from its first to its last ping and over the ranges of
+   the records; else around the place that the records have in common. Steps of half the resolution, at most 1000 pixels
+   an axis, about the middle. *cut: that bound shortened it. False where no grid suits the geometry. */
+static bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
 {
     struct straight_track track;
     double nearest, farthest, x_low, x_high, r_low, r_high;

@@ -231,6 +231,19 @@ static int margin_lines(const struct tree *tree, const struct polar_step *step, 
     return tree->angle.taps / 2 + 1 + (int)fmin(turned, LINES_MOST);
 }
 
+/* The part of a grid that may be read: without its margins, which the taps need. */
+static void grid_margins(const struct tree *tree, const struct polar_step *step, struct polar *polar)
+{
+    const int places = margin_places(tree);
+    polar->near = (polar->place_first + places) * step->rho;
+    polar->far = (polar->place_first + polar->places - 1 - places) * step->rho;
+    const int lines = polar->near > 0 ? margin_lines(tree, step, polar->near) : 0;
+    polar->low = (polar->line_first + lines) * step->sine;
+    polar->high = (polar->line_first + polar->lines - 1 - lines) * step->sine;
+    if (!(polar->near > 0 && polar->near < polar->far && polar->low <= polar->high))
+        *polar = (struct polar){.lines = 0};
+}
+
 void grid_cover(const struct tree *tree, const struct polar_step *step, struct sector sector, struct polar *polar)
 {
     *polar = (struct polar){.lines = 0};
@@ -254,18 +267,6 @@ void grid_cover(const struct tree *tree, const struct polar_step *step, struct s
         polar->line_first = -widest;
     }
     grid_margins(tree, step, polar);
-}
-
-void grid_margins(const struct tree *tree, const struct polar_step *step, struct polar *polar)
-{
-    const int places = margin_places(tree);
-    polar->near = (polar->place_first + places) * step->rho;
-    polar->far = (polar->place_first + polar->places - 1 - places) * step->rho;
-    const int lines = polar->near > 0 ? margin_lines(tree, step, polar->near) : 0;
-    polar->low = (polar->line_first + lines) * step->sine;
-    polar->high = (polar->line_first + polar->lines - 1 - lines) * step->sine;
-    if (!(polar->near > 0 && polar->near < polar->far && polar->low <= polar->high))
-        *polar = (struct polar){.lines = 0};
 }
 
 /* Leave places from `near` to `far`. */

@@ -26,8 +26,6 @@ void sector_rates(const struct tree *tree, const struct subaperture *part, int v
                   struct polar_step *step);
 /* The grid that interpolates all of a sector. */
 void grid_cover(const struct tree *tree, const struct polar_step *step, struct sector sector, struct polar *polar);
-/* The part of a grid that may be read: without its margins, which the taps need. */
-void grid_margins(const struct tree *tree, const struct polar_step *step, struct polar *polar);
 /* Cut off places outside of a record (level 0), or outside of the parts' images. */
 void grid_clip_records(const struct tree *tree, const struct subaperture *part, int view, struct polar *polar);
 void grid_clip_parts(const struct tree *tree, const struct subaperture *part, int view, struct polar *polar);
