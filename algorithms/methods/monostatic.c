@@ -1,9 +1,10 @@
-/* The filter that turns multi-receiver echoes into monostatic ones (wavenumber/monostatic_plan.h), as "monostatic |
-   wk_squint": omega-k of squinted multi-receiver scenes. At broadside rma_delay corrects what this leaves off the
-   beam's axis.
+/* The filter that turns multi-receiver echoes of any track into monostatic ones of a straight one
+   (wavenumber/monostatic_plan.h): motion compensation, as "monostatic | rma_delay", and omega-k of multi-receiver
+   scenes, as "monostatic | wk_squint".
 
-   Cost: 4 taps + 6 FLOPs a sample, behind the compression. Error: predicted by the phase that is left, over receivers,
-   ranges and the beam; above 0.1 the problem is refused. */
+   Cost: 4 taps + 6 FLOPs a sample, behind the compression; where terms are needed, a transform along the track for each
+   and one back. Error: predicted by the phase that is left, over records, ranges, the band and the beam; above 0.05
+   the problem is refused. */
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -12,7 +13,7 @@
 #include "range_migration/rma.h"
 #include "wavenumber/monostatic_plan.h"
 
-static const double ERROR_MOST = 0.1; /* as rma_delay's */
+static const double ERROR_MOST = 0.05; /* predicted errors above that may be measured twice as large */
 
 struct options {
     int taps; /* index into rma_delay_taps_names */
@@ -24,41 +25,20 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-/* rad: the phase that is wrong in an echo from a range, `angle` off broadside. */
-static double phase_left(const struct monostatic *m, const struct centre *centre, double range, double angle)
-{
-    const double c = m->acquisition->sound_speed;
-    const struct vector place = {range * sin(angle), range * cos(angle), 0}, still = {0, 0, 0}, v = {m->speed, 0, 0};
-    const double own = delay_exact(still, still, v, place, c);
-    const double pair = delay_exact((struct vector){centre->tx, 0, 0}, (struct vector){centre->rx, 0, 0}, v, place, c);
-    return 2 * M_PI * m->acquisition->fc * (pair - monostatic_delay(m, centre, own));
-}
-
-/* Root mean square over receivers, the beam, and the nearest and farthest rows, of which the worse counts. */
-static double error_left(const struct monostatic *m, const struct problem *problem)
-{
-    enum { ANGLES = 5 };
-    const struct acquisition *a = m->acquisition;
-    const double half = asin(fmin(condition_cut_sine(a), 0.98));
-    double worst = 0;
-    for (int k = 0; k < 4 * problem->patch_count; k++) {
-        const struct grid *g = &problem->patches[k / 4];
-        const struct vector corner = grid_point(g, k & 1 ? g->r_count - 1 : 0, k & 2 ? g->x_count - 1 : 0);
-        double sum = 0;
-        for (int n = 0; n < a->receivers * ANGLES; n++) {
-            const double angle = m->squint + half * (n % ANGLES - ANGLES / 2) / (ANGLES / 2);
-            const double left = phase_left(m, &m->centres[n / ANGLES], fabs(corner.y) / fmax(cos(angle), 0.02), angle);
-            sum += left * left;
-        }
-        worst = fmax(worst, corner.y != 0 ? sqrt(sum / (a->receivers * ANGLES)) : INFINITY);
-    }
-    return worst;
-}
+struct receiver {
+    int number;
+    double offset; /* m along the track */
+};
 
 static int by_offset(const void *one, const void *other)
 {
-    const double a = ((const struct centre *)one)->rx, b = ((const struct centre *)other)->rx;
+    const double a = ((const struct receiver *)one)->offset, b = ((const struct receiver *)other)->offset;
     return (a > b) - (a < b);
+}
+
+static struct vector from_place(struct vector v, double x)
+{
+    return (struct vector){v.x - x, v.y, v.z};
 }
 
 /* Centres in the order of the track, and from the raster of equal spacing that is nearest to them. */
@@ -66,37 +46,45 @@ static void centres_place(struct monostatic *m, const struct straight_track *tra
 {
     const struct acquisition *a = m->acquisition;
     const int count = a->receivers;
-    struct centre *sorted = store_take(&m->store, (size_t)count, sizeof *sorted, 1);
+    struct receiver *sorted = store_take(&m->store, (size_t)count, sizeof *sorted, 1);
+    m->centres = store_take(&m->store, (size_t)m->rows, sizeof *m->centres, 1);
     double mean = 0;
     if (m->store.failed)
         return;
     for (int k = 0; k < count; k++) {
-        sorted[k] = (struct centre){.place = k, .rx = a->rx[k].x - a->tx[0].x};
-        mean += sorted[k].rx / 2 / count;
+        sorted[k] = (struct receiver){k, a->rx[k].x - a->tx[0].x};
+        mean += sorted[k].offset / 2 / count;
     }
     qsort(sorted, (size_t)count, sizeof *sorted, by_offset);
     m->spacing = track->spacing / count;
     m->first = track->x_first + mean - (count - 1) / 2.0 * m->spacing;
-    for (int k = 0; k < count; k++) {
-        const int place = m->spacing < 0 ? count - 1 - k : k;
-        const double from = m->first + place * m->spacing - track->x_first;
-        m->centres[sorted[k].place] = (struct centre){place, -from, sorted[k].rx - from};
-    }
+    for (int k = 0; k < count; k++)
+        for (int p = 0; p < (m->straight ? 1 : a->pings); p++) {
+            const int place = m->spacing < 0 ? count - 1 - k : k, receiver = sorted[k].number;
+            const double x = m->first + (p * count + place) * m->spacing;
+            m->centres[monostatic_row(m, p, receiver)] =
+                (struct centre){place, from_place(a->tx[p], x), from_place(a->rx[p * count + receiver], x),
+                                m->straight ? (struct vector){m->speed, 0, 0} : a->velocity[p]};
+        }
 }
 
-static enum status monostatic_check(const struct monostatic *m, const struct problem *problem)
+static enum status monostatic_check(const struct monostatic *m)
 {
-    const struct acquisition *a = problem->acquisition;
-    double uneven = 0;
-    for (int k = 0; k < a->receivers; k++)
-        uneven = fmax(uneven, fabs(m->centres[k].tx + m->centres[k].rx) / 2);
+    const struct acquisition *a = m->acquisition;
+    double along = 0, aside = 0;
+    for (int k = 0; k < m->rows; k++) {
+        const struct centre *at = &m->centres[k];
+        along = fmax(along, fabs(at->tx.x + at->rx.x) / 2);
+        aside = fmax(aside, fmax(hypot(at->tx.y, at->tx.z), hypot(at->rx.y, at->rx.z)));
+    }
     if (m->left <= ERROR_MOST)
         return STATUS_OK;
     return status_set(STATUS_UNSUPPORTED,
                       "monostatic: condition conversion: relative error %.2g is left off the beam's axis; at most %g. "
-                      "Receivers' middles lie up to %.2g m off an even spacing of %.3g m (cure: back projection, or a "
-                      "shorter array, rows farther away, a ping spacing of receivers times pitch/2)",
-                      m->left, ERROR_MOST, uneven, fabs(m->spacing));
+                      "The track lies up to %.2g m (%.2g wavelengths) beside a straight one, the receivers' middles up "
+                      "to %.2g m off an even spacing of %.3g m (cure: back projection, or a straighter track, a "
+                      "narrower beam, a shorter array, rows farther away, a ping spacing of receivers times pitch/2)",
+                      m->left, ERROR_MOST, aside, aside * a->fc / a->sound_speed, along, fabs(m->spacing));
 }
 
 static void monostatic_destroy(void *plan)
@@ -115,9 +103,9 @@ static enum status monostatic_plan(const struct problem *problem, const void *me
     struct straight_track track;
     (void)method;
     *plan = NULL;
-    if (!acquisition_is_straight(a, &track) || a->pings < 2)
-        return status_set(STATUS_UNSUPPORTED, "monostatic: condition uniform_track: two pings and more of a uniform "
-                                              "straight track are needed (cure: back projection)");
+    if (a->pings < 2 || !isfinite(acquisition_unevenness(a, &track)))
+        return status_set(STATUS_UNSUPPORTED, "monostatic: condition track: two pings and more at different places are "
+                                              "needed (cure: back projection)");
     struct monostatic *m = calloc(1, sizeof *m);
     if (!m)
         return status_set(STATUS_FAILED, "monostatic: no memory for a plan");
@@ -125,16 +113,17 @@ static enum status monostatic_plan(const struct problem *problem, const void *me
                              .precision = problem->precision,
                              .speed = track.speed,
                              .squint = a->echo_squint,
+                             .straight = acquisition_is_straight(a, NULL),
                              .threads = omp_get_max_threads(),
                              .taps = taps[((const struct options *)options)->taps]};
+    m->rows = m->straight ? a->receivers : a->pings * a->receivers;
     m->length = a->samples + 2 * m->taps;
-    m->centres = store_take(&m->store, (size_t)a->receivers, sizeof *m->centres, 1);
     centres_place(m, &track);
     enum status status = STATUS_OK;
-    if (!m->store.failed) {
-        m->left = error_left(m, problem);
-        status = monostatic_check(m, problem);
-    }
+    if (!m->store.failed)
+        monostatic_terms(m, problem);
+    if (!m->store.failed)
+        status = monostatic_check(m);
     if (status == STATUS_OK && !m->store.failed)
         (m->precision == PRECISION_DOUBLE ? monostatic_fill_double : monostatic_fill_float)(m);
     if (status == STATUS_OK && m->store.failed)
@@ -181,7 +170,7 @@ static struct work monostatic_work(const void *plan)
 
 const struct algorithm monostatic = {
     .name = "monostatic",
-    .summary = "receivers become pings of a monostatic sonar",
+    .summary = "receivers become pings of a monostatic sonar on a straight track",
     .reference = "SQ18 section 1, [2]; this project's delays",
     .options_size = sizeof(struct options),
     .params = params,

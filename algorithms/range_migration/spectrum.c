@@ -168,3 +168,15 @@ double spectrum_compensated(const struct spectrum_setting *setting, double d, do
     return -(r * spectrum_monostatic(setting, frequency, nu) - M_PI * nu * d + late
              + bistatic(setting, d, r, setting->fc, nu));
 }
+
+double spectrum_wavenumber(const struct spectrum_setting *setting, double angle)
+{
+    double c = setting->sound_speed, beta = setting->speed / c, f = setting->fc / ((1 - beta) * (1 + beta));
+    return (sin(angle) - beta) * f * 2 / c;
+}
+
+double spectrum_angle(const struct spectrum_setting *setting, double nu)
+{
+    double c = setting->sound_speed, beta = setting->speed / c, f = setting->fc / ((1 - beta) * (1 + beta));
+    return asin(fmin(fmax(c * nu / 2 / f + beta, -1), 1));
+}

@@ -54,6 +54,10 @@ double spectrum_monostatic(const struct spectrum_setting *setting, double freque
 /* (1/2 pi) dK/dF, K the factor of -r: delay over range (s/m). NAN where evanescent. */
 double spectrum_slowness(const struct spectrum_setting *setting, double frequency, double nu);
 
+/* nu at fc of echoes that come from `angle` (rad) ahead of broadside to d = 0 at emission; and back, within +-pi/2. */
+double spectrum_wavenumber(const struct spectrum_setting *setting, double angle);
+double spectrum_angle(const struct spectrum_setting *setting, double nu);
+
 /* The exact delay (s) of a target at range r, the transmitter u metres ahead of it, and its slope over u (s/m). */
 double spectrum_delay(const struct spectrum_setting *setting, double d, double r, double u);
 double spectrum_slope(const struct spectrum_setting *setting, double d, double r, double u);

@@ -2,10 +2,14 @@
 #include "wavenumber/monostatic_plan.h"
 
 #include <omp.h>
+#include <string.h>
 
 #include "backprojection/traces.h"
+#include "common/cubic.h"
 #include "common/fft.h"
+#include "common/fft_length.h"
 #include "range_migration/delay_compensation.h"
+#include "range_migration/spectrum.h"
 
 static void weights_fill(struct monostatic *m)
 {
@@ -20,13 +24,13 @@ static void weights_fill(struct monostatic *m)
     }
 }
 
-static void delays_fill(struct monostatic *m, int receiver)
+static void delays_fill(struct monostatic *m, int row_number, double t0)
 {
     const struct acquisition *a = m->acquisition;
-    const size_t row = (size_t)receiver * (size_t)a->samples;
+    const size_t row = (size_t)row_number * (size_t)a->samples;
     for (int n = 0; n < a->samples; n++) {
-        const double t = a->t0[0] + n / a->fs, tau = monostatic_delay(m, &m->centres[receiver], t);
-        const double at = (tau - a->t0[0]) * a->fs;
+        const double t = a->t0[0] + n / a->fs, tau = monostatic_delay(m, &m->centres[row_number], t);
+        const double at = (tau - t0) * a->fs;
         if (!(at > -1 && at < a->samples)) /* nothing is recorded there */
             continue;
         const double node = nearbyint((at - floor(at)) * MONOSTATIC_NODES);
@@ -36,11 +40,47 @@ static void delays_fill(struct monostatic *m, int receiver)
     }
 }
 
+/* The terms along the raster and its wavenumbers, these unfolded about that of the beam's axis. */
+static void terms_fill(struct monostatic *m)
+{
+    const struct acquisition *a = m->acquisition;
+    const struct spectrum_setting setting = {.sound_speed = a->sound_speed, .speed = m->speed, .fc = a->fc};
+    const size_t pings = (size_t)a->pings * (size_t)a->receivers, terms = (size_t)m->terms;
+    m->wavenumbers = fft_length_quick((long long)pings + (long long)pings / 8 + 32); /* products spread a little */
+    m->store.failed = m->store.failed || m->wavenumbers == 0;
+    const size_t length = (size_t)m->wavenumbers;
+    m->vectors = store_take(&m->store, terms * pings, sizeof(complex_real), 1);
+    m->products = store_take(&m->store, terms * MONOSTATIC_RANGES * length, sizeof(complex_real), 1);
+    m->strips = store_take(&m->store, (size_t)m->threads * (2 * MONOSTATIC_STRIP + 1) * length, sizeof(complex_real),
+                           1.0 / m->threads);
+    if (m->store.failed)
+        return;
+    m->forward = fft_strip(&m->store, m->wavenumbers, MONOSTATIC_STRIP, m->strips, m->strips, FFTW_FORWARD);
+    m->inverse = fft_strip(&m->store, m->wavenumbers, MONOSTATIC_STRIP, m->strips, m->strips, FFTW_BACKWARD);
+    for (int q = 0; q < m->terms; q++)
+        for (size_t n = 0; n < pings; n++) {
+            const int ping = (int)n / a->receivers, receiver = (int)n % a->receivers;
+            const int row = monostatic_row(m, ping, receiver);
+            const size_t to = (size_t)(ping * a->receivers + m->centres[row].place);
+            ((complex_real *)m->vectors)[(size_t)q * pings + to] =
+                (complex_real)m->basis[(size_t)q * (size_t)m->rows + (size_t)row];
+        }
+    const double centroid = spectrum_wavenumber(&setting, m->squint) * m->spacing;
+    for (int n = 0; n < m->terms * MONOSTATIC_RANGES; n++)
+        for (size_t k = 0; k < length; k++) {
+            const double cycles = (double)k / (double)length;
+            const double nu = (cycles + nearbyint(centroid - cycles)) / m->spacing;
+            ((complex_real *)m->products)[(size_t)n * length + k] =
+                (complex_real)(monostatic_value(m, n / MONOSTATIC_RANGES, n % MONOSTATIC_RANGES, nu) / (double)length);
+        }
+}
+
 void REAL_NAME(monostatic_fill)(struct monostatic *m)
 {
     const struct acquisition *a = m->acquisition;
-    const size_t all = (size_t)a->receivers * (size_t)a->samples;
+    const size_t all = (size_t)m->rows * (size_t)a->samples;
     const struct traces_form form = {.upsample = 1, .guard = m->taps};
+    const double records = (double)a->pings * a->receivers;
     struct traces_shape shape;
     m->begins = store_take(&m->store, all, sizeof *m->begins, 1);
     m->nodes = store_take(&m->store, all, sizeof *m->nodes, 1);
@@ -50,19 +90,26 @@ void REAL_NAME(monostatic_fill)(struct monostatic *m)
     if (!m->store.failed && REAL_NAME(traces).plan(a, &form, m->threads, &shape, &m->traces) == STATUS_OK)
         store_keep(&m->store, m->traces, REAL_NAME(traces).destroy);
     m->store.failed = m->store.failed || !m->traces;
+    if (!m->store.failed && m->terms > 0)
+        terms_fill(m);
     if (m->store.failed)
         return;
-    for (int receiver = 0; receiver < a->receivers; receiver++)
-        delays_fill(m, receiver);
-    m->work.flops = (double)a->pings * a->receivers * (shape.flops + a->samples * (4.0 * m->taps + 6));
+#pragma omp parallel for schedule(static) num_threads(m->threads)
+    for (int row = 0; row < m->rows; row++)
+        delays_fill(m, row, a->t0[m->straight ? 0 : row / a->receivers]);
+    m->work.flops = records * (shape.flops + a->samples * (4.0 * m->taps + 6));
+    if (m->terms > 0)
+        m->work.flops += a->samples
+                         * ((m->terms + 1) * fft_flops(m->wavenumbers)
+                            + m->terms * (6 * records + (6 * 4 + 8) * (double)m->wavenumbers));
     m->work.bytes = m->store.bytes + shape.bytes;
 }
 
 /* Guards are zero, and the taps reach into them. */
-static void record_convert(const struct monostatic *m, int receiver, const real *record, real *restrict to)
+static void record_convert(const struct monostatic *m, int row_number, const real *record, real *restrict to)
 {
     const int samples = m->acquisition->samples, taps = m->taps;
-    const size_t row = (size_t)receiver * (size_t)samples;
+    const size_t row = (size_t)row_number * (size_t)samples;
     const real *turns = (const real *)m->turns + 2 * row;
     for (int n = 0; n < samples; n++) {
         const real *from = record + 2 * (size_t)m->begins[row + (size_t)n];
@@ -79,6 +126,70 @@ static void record_convert(const struct monostatic *m, int receiver, const real 
     }
 }
 
+/* acc += U times the transforms, at the range of each of the strip's samples. */
+static void products_add(const struct monostatic *m, int term, int first, int width, const complex_real *transforms,
+                         complex_real *restrict line, complex_real *restrict acc)
+{
+    const struct acquisition *a = m->acquisition;
+    const size_t length = (size_t)m->wavenumbers;
+    for (int w = 0; w < width; w++) {
+        double weights[4];
+        const double range = monostatic_range(m, m->squint, a->t0[0] + (first + w) / a->fs);
+        const double place = range > 0 ? (1 / range - m->inverse_first) / m->inverse_step : INFINITY;
+        const int from = cubic_weights(place, MONOSTATIC_RANGES, weights);
+        const real *u =
+            (const real *)((const complex_real *)m->products + (size_t)(term * MONOSTATIC_RANGES + from) * length);
+        const real w0 = (real)weights[0], w1 = (real)weights[1], w2 = (real)weights[2], w3 = (real)weights[3];
+        for (size_t k = 0; k < 2 * length; k++)
+            ((real *)line)[k] = w0 * u[k] + w1 * u[k + 2 * length] + w2 * u[k + 4 * length] + w3 * u[k + 6 * length];
+        for (size_t k = 0; k < length; k++) {
+            const real *t = (const real *)(transforms + k * MONOSTATIC_STRIP + w);
+            real *to = (real *)(acc + k * MONOSTATIC_STRIP + w);
+            const real re = ((real *)line)[2 * k], im = ((real *)line)[2 * k + 1];
+            to[0] += re * t[0] - im * t[1];
+            to[1] += re * t[1] + im * t[0];
+        }
+    }
+}
+
+/* Samples first to first + width of all pings of the raster. */
+static void strip_turn(const struct monostatic *m, int first, int width, complex_real *converted, complex_real *strips)
+{
+    const struct acquisition *a = m->acquisition;
+    const size_t pings = (size_t)a->pings * (size_t)a->receivers, length = (size_t)m->wavenumbers;
+    const size_t samples = (size_t)a->samples;
+    complex_real *strip = strips, *acc = strips + length * MONOSTATIC_STRIP, *line = acc + length * MONOSTATIC_STRIP;
+    memset(acc, 0, length * MONOSTATIC_STRIP * sizeof *acc);
+    for (int q = 0; q < m->terms; q++) {
+        const real *v = (const real *)((const complex_real *)m->vectors + (size_t)q * pings);
+        memset(strip, 0, length * MONOSTATIC_STRIP * sizeof *strip);
+        for (size_t n = 0; n < pings; n++) {
+            const real *from = (const real *)(converted + n * samples + first);
+            real *to = (real *)(strip + n * MONOSTATIC_STRIP);
+            for (int w = 0; w < width; w++) {
+                to[2 * w] = v[2 * n] * from[2 * w] - v[2 * n + 1] * from[2 * w + 1];
+                to[2 * w + 1] = v[2 * n] * from[2 * w + 1] + v[2 * n + 1] * from[2 * w];
+            }
+        }
+        FFTW(execute_dft)(m->forward, strip, strip);
+        products_add(m, q, first, width, strip, line, acc);
+    }
+    FFTW(execute_dft)(m->inverse, acc, acc);
+    for (size_t n = 0; n < pings; n++)
+        memcpy(converted + n * samples + first, acc + n * MONOSTATIC_STRIP, (size_t)width * sizeof *acc);
+}
+
+static void terms_apply(const struct monostatic *m, complex_real *converted)
+{
+    const int samples = m->acquisition->samples;
+    const size_t room = (2 * MONOSTATIC_STRIP + 1) * (size_t)m->wavenumbers;
+#pragma omp parallel for schedule(static) num_threads(m->threads)
+    for (int first = 0; first < samples; first += MONOSTATIC_STRIP) {
+        const int width = samples - first < MONOSTATIC_STRIP ? samples - first : MONOSTATIC_STRIP;
+        strip_turn(m, first, width, converted, (complex_real *)m->strips + (size_t)omp_get_thread_num() * room);
+    }
+}
+
 void REAL_NAME(monostatic_convert)(const struct monostatic *m, const void *samples, void *converted)
 {
     const struct acquisition *a = m->acquisition;
@@ -87,9 +198,12 @@ void REAL_NAME(monostatic_convert)(const struct monostatic *m, const void *sampl
     for (int n = 0; n < a->pings * a->receivers; n++) {
         const size_t ping = (size_t)n / receivers, receiver = (size_t)n % receivers;
         complex_real *record = (complex_real *)m->scratch + (size_t)omp_get_thread_num() * (size_t)m->length;
-        const size_t to = (ping * receivers + (size_t)m->centres[receiver].place) * count;
+        const int row = monostatic_row(m, (int)ping, (int)receiver);
+        const size_t to = (ping * receivers + (size_t)m->centres[row].place) * count;
         REAL_NAME(traces).fill(m->traces, omp_get_thread_num(), (const complex_real *)samples + (size_t)n * count,
                                record);
-        record_convert(m, (int)receiver, (const real *)record, (real *)((complex_real *)converted + to));
+        record_convert(m, row, (const real *)record, (real *)((complex_real *)converted + to));
     }
+    if (m->terms > 0)
+        terms_apply(m, converted);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/cubic.h"
 #include "range_migration/delay_compensation.h"
 
 enum {
@@ -78,19 +79,6 @@ static void phasors(const struct rma_view *view, const struct offsets *offsets, 
     }
 }
 
-/* nu at an angle of the table, and back. */
-static double wavenumber(const struct spectrum_setting *setting, double angle)
-{
-    double c = setting->sound_speed, beta = setting->speed / c, f = setting->fc / ((1 - beta) * (1 + beta));
-    return (sin(angle) - beta) * f * 2 / c;
-}
-
-static double angle_of(const struct spectrum_setting *setting, double nu)
-{
-    double c = setting->sound_speed, beta = setting->speed / c, f = setting->fc / ((1 - beta) * (1 + beta));
-    return asin(fmin(fmax(c * nu / 2 / f + beta, -1), 1));
-}
-
 /* Rows, and the angles that are focused: rma_line leaves out others. */
 static void extent(const struct rma_view *view, struct delay_terms *terms)
 {
@@ -104,12 +92,13 @@ static void extent(const struct rma_view *view, struct delay_terms *terms)
     }
     double reach = rma_reach(a, &view->bounds, nearest) + view->bounds.aside;
     double widest = fmin(atan(reach / nearest) * 1.05, WIDEST), full = a->receivers / (2 * view->spacing);
-    double from = fmax(-widest, angle_of(&view->setting, -full)), to = fmin(widest, angle_of(&view->setting, full));
+    double from = fmax(-widest, spectrum_angle(&view->setting, -full)),
+           to = fmin(widest, spectrum_angle(&view->setting, full));
     terms->angle_first = from;
     terms->angle_step = (to - from) / (ANGLES - 1);
     /* The echo of a row at the widest angle arrives like that of a farther row at broadside. */
-    double walk = fmax(spectrum_walk(&view->setting, wavenumber(&view->setting, from)),
-                       spectrum_walk(&view->setting, wavenumber(&view->setting, to)));
+    double walk = fmax(spectrum_walk(&view->setting, spectrum_wavenumber(&view->setting, from)),
+                       spectrum_walk(&view->setting, spectrum_wavenumber(&view->setting, to)));
     terms->inverse_first = 1 / (1.05 * farthest * walk);
     terms->inverse_step = (1 / (0.9 * nearest) - terms->inverse_first) / (RANGES - 1);
 }
@@ -199,7 +188,7 @@ static bool basis_make(const struct rma_view *view, const struct offsets *offset
             if (pass == 0 && fabs(sin(angle)) > view->beam_sine)
                 continue;
             for (int n = 0; n < RANGES; n += EVERY, count++)
-                phasors(view, offsets, table_range(terms, n), wavenumber(&view->setting, angle),
+                phasors(view, offsets, table_range(terms, n), spectrum_wavenumber(&view->setting, angle),
                         samples + (size_t)count * receivers);
         }
     if (count > 0) {
@@ -253,7 +242,7 @@ bool delay_terms_make(const struct rma_view *view, int count, struct delay_terms
         for (int n = 0; n < RANGES; n++) {
             double complex parts[DELAY_TERMS];
             phasors(view, &offsets, table_range(terms, n),
-                    wavenumber(&view->setting, terms->angle_first + a * terms->angle_step), sample);
+                    spectrum_wavenumber(&view->setting, terms->angle_first + a * terms->angle_step), sample);
             project(terms, sample, parts);
             for (size_t q = 0; q < all; q++)
                 terms->coefficients[((size_t)a * all + q) * RANGES + (size_t)n] = parts[q];
@@ -272,36 +261,23 @@ void delay_terms_free(struct delay_terms *terms)
 
 /* ---- the table ---- */
 
-/* The first of four nodes about a place, limited to the table, and Lagrange's weights. */
-static int cubic(double place, int count, double weights[4])
-{
-    place = fmin(fmax(place, 0), count - 1);
-    int first = (int)fmin(fmax(floor(place) - 1, 0), count - 4);
-    double u = place - first - 1;
-    weights[0] = -u * (u - 1) * (u - 2) / 6;
-    weights[1] = (u + 1) * (u - 1) * (u - 2) / 2;
-    weights[2] = -(u + 1) * u * (u - 2) / 2;
-    weights[3] = (u + 1) * u * (u - 1) / 6;
-    return first;
-}
-
 int delay_terms_place(const struct delay_terms *terms, const struct spectrum_setting *setting, double nu,
                       double weights[4])
 {
-    double place = terms->angle_step > 0 ? (angle_of(setting, nu) - terms->angle_first) / terms->angle_step : 0;
-    return cubic(place, terms->angles, weights);
+    double place = terms->angle_step > 0 ? (spectrum_angle(setting, nu) - terms->angle_first) / terms->angle_step : 0;
+    return cubic_weights(place, terms->angles, weights);
 }
 
 double delay_terms_wavenumber(const struct delay_terms *terms, const struct spectrum_setting *setting, int angle)
 {
-    return wavenumber(setting, terms->angle_first + angle * terms->angle_step);
+    return spectrum_wavenumber(setting, terms->angle_first + angle * terms->angle_step);
 }
 
 double complex delay_terms_value(const struct delay_terms *terms, int angle, int q, double r)
 {
     double weights[4];
-    const double complex *from = terms->coefficients
-                                 + ((size_t)angle * (size_t)terms->terms + (size_t)q) * (size_t)terms->ranges
-                                 + cubic((1 / r - terms->inverse_first) / terms->inverse_step, terms->ranges, weights);
+    const double complex *from =
+        terms->coefficients + ((size_t)angle * (size_t)terms->terms + (size_t)q) * (size_t)terms->ranges
+        + cubic_weights((1 / r - terms->inverse_first) / terms->inverse_step, terms->ranges, weights);
     return weights[0] * from[0] + weights[1] * from[1] + weights[2] * from[2] + weights[3] * from[3];
 }
