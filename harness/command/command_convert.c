@@ -34,8 +34,8 @@ enum status command_convert(const struct task *task)
     snprintf(description, sizeof description, "converted from %s", recording.layout);
     status = echo_file_write(task->output, &recording.echoes, &(struct echo_notes){.description = description});
     if (status == STATUS_OK)
-        printf("%s: %d pings, %d receiver%s, %d samples\n%s%s", recording.layout, a->pings, a->receivers,
-               a->receivers == 1 ? "" : "s", a->samples, recording.note, *recording.note ? "\n" : "");
+        printf("%s: %s, %d pings, %d receiver%s, %d samples\n%s%s", task->output, recording.layout, a->pings,
+               a->receivers, a->receivers == 1 ? "" : "s", a->samples, recording.note, *recording.note ? "\n" : "");
     recording_free(&recording);
     return status;
 }

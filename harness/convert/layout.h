@@ -17,8 +17,10 @@ struct layout {
 
 extern const struct layout airsas_layout, gotcha_layout, zea_layout;
 
-/* variables_read, and refuse numbers that are not finite. Same ownership and errors. */
+/* variables_read and fields_check. Same ownership and errors. */
 enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables);
+/* Refuse numbers that are not finite. Errors: STATUS_INVALID naming the first. */
+enum status fields_check(const char *path, const struct wanted *fields, int count, const struct variable *variables);
 /* The real part of number i of a field. */
 double field_number(const struct variable *field, size_t i);
 /* Refuse a field whose shape does not fit; `why` says what it must fit. */

@@ -27,27 +27,32 @@ enum status field_refuse(const char *path, const struct wanted *wanted, const st
                       wanted->accepted);
 }
 
+enum status fields_check(const char *path, const struct wanted *fields, int count, const struct variable *variables)
+{
+    for (int k = 0; k < count; k++) {
+        const struct variable *v = &variables[k];
+        for (size_t i = 0; v->values && i < variable_count(v); i++) {
+            const double complex z = v->values[i];
+            if (!isfinite(creal(z)) || !isfinite(cimag(z)))
+                return status_set(STATUS_INVALID,
+                                  "%s: variable `%s` at (%zu, %zu, %zu) is %g%+gi; finite numbers are "
+                                  "needed",
+                                  path, fields[k].name, i % v->dims[0] + 1, i / v->dims[0] % v->dims[1] + 1,
+                                  i / v->dims[0] / v->dims[1] + 1, creal(z), cimag(z));
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables)
 {
     enum status status = variables_read(path, fields, count, variables);
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; k < count; k++) {
-        const struct variable *v = &variables[k];
-        for (size_t i = 0; v->values && i < variable_count(v); i++) {
-            const double complex z = v->values[i];
-            if (isfinite(creal(z)) && isfinite(cimag(z)))
-                continue;
-            status = status_set(STATUS_INVALID,
-                                "%s: variable `%s` at (%zu, %zu, %zu) is %g%+gi; finite numbers are "
-                                "needed",
-                                path, fields[k].name, i % v->dims[0] + 1, i / v->dims[0] % v->dims[1] + 1,
-                                i / v->dims[0] / v->dims[1] + 1, creal(z), cimag(z));
-            variables_free(variables, count);
-            return status;
-        }
-    }
-    return STATUS_OK;
+    status = fields_check(path, fields, count, variables);
+    if (status != STATUS_OK)
+        variables_free(variables, count);
+    return status;
 }
 
 /* How many of a layout's fields the file has, whatever is in them. */

@@ -3,13 +3,9 @@
    Their delay and ours differ by the time of the first sample: its initial time, less the delay of the element and the
    peak of the waveform. I and Q turn with the time since the first sample, real samples with the time itself. Their
    (x, y, z), z into depth, is our (x, -z, y). Frames follow one another as pings. */
-#include <complex.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
-#include "convert/band.h"
-#include "convert/layout.h"
+#include "convert/elements.h"
 #include "echoes/matfile.h"
 
 enum { RAW, PROBE, FS, FC, DEMODULATION, SPEED, FIRST, DELAYS, WEIGHTS, PEAK, FIELDS };
@@ -75,104 +71,52 @@ static enum status sender_find(const char *path, const struct variable *v, size_
                                    path, fields[WEIGHTS].name, sent + 1, count);
 }
 
-static enum status geometry_fill(const char *path, const struct variable *v, struct acquisition *a)
+/* Transmission after transmission, frame after frame. */
+static enum status pings_fill(const char *path, const struct variable *v, const struct elements *elements,
+                              struct acquisition *a)
 {
-    const size_t elements = v[RAW].dims[ELEMENT], sent = v[RAW].dims[TRANSMISSION];
-    for (size_t p = 0; p < (size_t)a->pings; p++) {
-        const size_t t = p % sent;
+    const size_t count = v[RAW].dims[ELEMENT], sent = v[RAW].dims[TRANSMISSION];
+    for (int p = 0; p < a->pings; p++) {
+        const size_t t = (size_t)p % sent;
         size_t sender = 0;
         const enum status status = sender_find(path, v, t, &sender);
         if (status != STATUS_OK)
             return status;
-        a->t0[p] = field_number(&v[FIRST], t) - field_number(&v[DELAYS], t * elements + sender);
+        double t0 = field_number(&v[FIRST], t) - field_number(&v[DELAYS], t * count + sender);
         if (v[PEAK].values)
-            a->t0[p] -= field_number(&v[PEAK], variable_count(&v[PEAK]) == 1 ? 0 : t);
-        for (size_t e = 0; e < elements; e++) {
-            const struct vector place = variable_vector(&v[PROBE], e);
-            a->rx[p * elements + e] = (struct vector){place.x, place.z, -place.y};
-        }
-        a->tx[p] = a->rx[p * elements + sender];
+            t0 -= field_number(&v[PEAK], variable_count(&v[PEAK]) == 1 ? 0 : t);
+        elements_ping(elements, p, sender, t0, a);
     }
     return STATUS_OK;
-}
-
-static double complex first_phase(const struct acquisition *a, size_t ping)
-{
-    const double turns = a->fc * a->t0[ping];
-    return cexp(-2 * M_PI * I * (turns - round(turns)));
-}
-
-/* Number of raw_data of a record's sample. */
-static size_t raw_index(const struct variable *raw, size_t ping, size_t element, size_t sample)
-{
-    const size_t *dims = raw->dims;
-    return dims[CHANNEL] * (element + dims[ELEMENT] * (sample + dims[SAMPLE] * ping));
-}
-
-static void pairs_fill(const struct variable *raw, const struct acquisition *a, double complex *samples)
-{
-    for (size_t p = 0; p < (size_t)a->pings; p++)
-        for (size_t e = 0; e < (size_t)a->receivers; e++)
-            for (size_t n = 0; n < (size_t)a->samples; n++) {
-                const size_t at = raw_index(raw, p, e, n);
-                const double complex pair = __builtin_complex(field_number(raw, at), field_number(raw, at + 1));
-                samples[(p * (size_t)a->receivers + e) * (size_t)a->samples + n] = pair * first_phase(a, p);
-            }
-}
-
-/* Real samples to their band, `half` bins to either side of bin `centre`. */
-static enum status reals_fill(const struct variable *raw, const struct acquisition *a, int centre, int half,
-                              double complex *samples)
-{
-    struct real_band band;
-    enum status status = real_band_open((int)raw->dims[SAMPLE], centre, half, a->samples, &band);
-    for (size_t p = 0; p < (size_t)a->pings && status == STATUS_OK; p++)
-        for (size_t e = 0; e < (size_t)a->receivers; e++) {
-            for (size_t n = 0; n < raw->dims[SAMPLE]; n++)
-                band.reals[n] = field_number(raw, raw_index(raw, p, e, n));
-            real_band_samples(&band, first_phase(a, p), samples + (p * (size_t)a->receivers + e) * (size_t)a->samples);
-        }
-    real_band_close(&band);
-    return status;
 }
 
 static enum status recording_fill(const char *path, const struct variable *v, struct recording *recording)
 {
     struct acquisition *a = &recording->acquisition;
-    const bool real = v[RAW].dims[CHANNEL] == 1;
+    const size_t *dims = v[RAW].dims, record = dims[CHANNEL] * dims[ELEMENT];
+    const bool real = dims[CHANNEL] == 1;
     const int fc = !real && v[DEMODULATION].values ? DEMODULATION : FC;
-    const double rate = field_number(&v[FS], 0), step = rate / (double)v[RAW].dims[SAMPLE];
-    a->fc = field_number(&v[fc], 0);
-    if (!(rate > 0) || !(a->fc > 0) || (real && !(a->fc < rate / 2 - step && a->fc > step)))
-        return status_set(STATUS_INVALID, "%s: variable `%s` is %g Hz, `%s` %g Hz; %s is needed", path, fields[fc].name,
-                          a->fc, fields[FS].name, rate, fields[fc].accepted);
-    const int centre = (int)round(a->fc / step), middle = (int)(v[RAW].dims[SAMPLE] / 2);
-    const int half = centre < middle - centre ? centre : middle - centre; /* all that lies even about it */
-    a->samples = real ? 2 * half : (int)v[RAW].dims[SAMPLE];
-    a->fs = real ? a->samples * step : rate;
-    a->fc = real ? centre * step : a->fc;
-    a->bandwidth = a->fs;
+    const struct elements elements = {.places = &v[PROBE],
+                                      .place_step = 3,
+                                      .axis_step = 1,
+                                      .in_phase = v[RAW].values,
+                                      .quadrature = real ? NULL : v[RAW].values + 1,
+                                      .sample_step = record,
+                                      .element_step = dims[CHANNEL],
+                                      .ping_step = record * dims[SAMPLE],
+                                      .samples = (int)dims[SAMPLE],
+                                      .rate = field_number(&v[FS], 0),
+                                      .fc = field_number(&v[fc], 0),
+                                      .places_field = &fields[PROBE],
+                                      .rate_field = &fields[FS],
+                                      .fc_field = &fields[fc]};
     a->sound_speed = field_number(&v[SPEED], 0);
-    a->receivers = (int)v[RAW].dims[ELEMENT];
-    a->pings = (int)(v[RAW].dims[TRANSMISSION] * v[RAW].dims[FRAME]);
-    a->aperture_limit = INFINITY;
-    a->compressed = true;
-    enum status status = positions_check(path, fields[PROBE].name, &v[PROBE], a->sound_speed / a->fc);
+    a->receivers = (int)dims[ELEMENT];
+    a->pings = (int)(dims[TRANSMISSION] * dims[FRAME]);
+    enum status status = elements_open(path, &elements, recording);
     if (status == STATUS_OK)
-        status = acquisition_allocate(a);
-    if (status == STATUS_OK)
-        status = geometry_fill(path, v, a);
-    if (status == STATUS_OK)
-        status = echoes_allocate(a, PRECISION_DOUBLE, &recording->echoes);
-    if (status != STATUS_OK)
-        return status;
-    snprintf(recording->note, sizeof recording->note,
-             "bandwidth is not in this layout: %.6g Hz, all that the samples hold, is stated", a->bandwidth);
-    double complex *samples = (double complex *)recording->echoes.samples;
-    if (real)
-        return reals_fill(&v[RAW], a, centre, half, samples);
-    pairs_fill(&v[RAW], a, samples);
-    return STATUS_OK;
+        status = pings_fill(path, v, &elements, a);
+    return status == STATUS_OK ? elements_fill(&elements, recording) : status;
 }
 
 static enum status zea_read(const char *const *paths, int count, struct recording *recording)

@@ -54,13 +54,45 @@ void assert_field_refused(const char *good, const char *bad, const char *field, 
         fail_msg("status %d, '%s', not '%s ... %s'", status, status_message(), begin, reason);
 }
 
-void set_write(hid_t file, const char *name, hid_t type, int rank, const hsize_t *dims, const void *values)
+void assert_converted(const char *file, const char *told, const struct raster *raster, const double complex *wanted)
 {
-    const hid_t links = H5Pcreate(H5P_LINK_CREATE), space = H5Screate_simple(rank, dims, NULL);
+    const char *const convert[ARGUMENTS_MAX] = {"convert", file, "-o", "echo.mat"};
+    char begin[200];
+    snprintf(begin, sizeof begin, "echo.mat: %s", told);
+    char *says = program_output(convert);
+    if (strncmp(says, begin, strlen(begin)) != 0)
+        fail_msg("'%s', not '%s'", says, begin);
+    free(says);
+    assert_image("echo.mat", raster, wanted);
+}
+
+void record_add(const double complex *record, int count, bool is_real, const double *delays, double turns,
+                double complex *image)
+{
+    for (int k = is_real ? 1 : -count / 2; k < count / 2; k++) {
+        double complex line = 0;
+        for (int n = 0; n < count; n++)
+            line += (is_real ? 2 : 1) * record[n] * cexp(-2 * M_PI * I * ((double)(k * n % count) / count)) / count;
+        for (int i = 0; i < GRID * GRID; i++)
+            image[i] += line * cexp(2 * M_PI * I * ((double)k / count + turns) * delays[i]);
+    }
+}
+
+void sets_write(const char *name, const struct set *sets, size_t count, const char *left_out)
+{
+    const hid_t file = H5Fcreate(path_in(name), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t links = H5Pcreate(H5P_LINK_CREATE);
     H5Pset_create_intermediate_group(links, 1);
-    const hid_t set = H5Dcreate2(file, name, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
-    assert_true(set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
-    H5Dclose(set);
-    H5Sclose(space);
+    for (size_t k = 0; k < count; k++) {
+        if (!sets[k].values || (left_out && strcmp(sets[k].name, left_out) == 0))
+            continue;
+        const hid_t type = sets[k].is_single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+        const hid_t space = H5Screate_simple(sets[k].rank, sets[k].dims, NULL);
+        const hid_t set = H5Dcreate2(file, sets[k].name, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
+        assert_true(set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, sets[k].values) >= 0);
+        H5Dclose(set);
+        H5Sclose(space);
+    }
     H5Pclose(links);
+    assert_true(H5Fclose(file) >= 0);
 }

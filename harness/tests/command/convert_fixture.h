@@ -3,7 +3,6 @@
 #define SASBENCH_TEST_CONVERT_FIXTURE_H
 
 #include <complex.h>
-#include <stdint.h>
 
 #include "tests/command/program.h"
 
@@ -20,8 +19,28 @@ double pixel_r(const struct raster *raster, int pixel);
 void assert_image(const char *echoes, const struct raster *raster, const double complex *wanted);
 /* A file, behind a good one (NULL: alone), is refused for a field, in this process: its status has the message. */
 void assert_field_refused(const char *good, const char *bad, const char *field, const char *reason);
-/* Write a data set, its groups with it, in HDF5's order. Numbers are those of HDF5: hid_t, hsize_t. */
-void set_write(int64_t file, const char *name, int64_t type, int rank, const unsigned long long *dims,
-               const void *values);
+/* The same of a file alone, of a table of data sets. */
+#define ASSERT_SETS_REFUSED(sets, left_out, field, reason)                                                             \
+    do {                                                                                                               \
+        sets_write("bad.h5", sets, COUNT_OF(sets), left_out);                                                          \
+        assert_field_refused(NULL, "bad.h5", field, reason);                                                           \
+    } while (0)
+/* `convert` makes of a file, saying `told`, echoes of that image. */
+void assert_converted(const char *file, const char *told, const struct raster *raster, const double complex *wanted);
+/* Add a record of `count` samples to the image, at each pixel's delay in samples from the first one. Between samples it
+   is the sum of its frequencies, of real samples twice those above 0. It turns by `turns` cycles a sample. */
+void record_add(const double complex *record, int count, bool is_real, const double *delays, double turns,
+                double complex *image);
+
+/* A data set of an HDF5 file, dimensions in its order. */
+struct set {
+    const char *name;
+    const void *values; /* NULL: it is left out */
+    bool is_single;     /* float, else double */
+    int rank;
+    unsigned long long dims[5];
+};
+/* Write a file of them, their groups with them, but one; NULL: all. */
+void sets_write(const char *file, const struct set *sets, size_t count, const char *left_out);
 
 #endif

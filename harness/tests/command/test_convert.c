@@ -119,7 +119,7 @@ static void gotcha_files_focus(void **state)
     gotcha_write("two.mat", MAT_FT_MAT5, MAT_COMPRESSION_NONE);
     gotcha_sum(image);
     char *told = program_output(both);
-    assert_string_equal(told, "AFRL Gotcha phase history: 80 pings, 1 receiver, 315 samples\n");
+    assert_string_equal(told, "both.mat: AFRL Gotcha phase history, 80 pings, 1 receiver, 315 samples\n");
     free(told);
     assert_image("both.mat", &around_centre, image);
 }

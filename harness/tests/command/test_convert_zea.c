@@ -1,7 +1,5 @@
 /* `convert`: zea's ultrasound, real samples as well as I and Q, against delay and sum by its own conventions. */
-#include <hdf5.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "tests/command/convert_fixture.h"
@@ -12,7 +10,7 @@ enum { FRAMES = 2, SENT = 3, DEPTHS = 200, ELEMENTS = 8, RECORDS = FRAMES * SENT
 struct zea {
     float raw[FRAMES * SENT * DEPTHS * ELEMENTS * 2];
     double probe[ELEMENTS][3], first[SENT], delays[SENT][ELEMENTS], weights[SENT][ELEMENTS], fs, fc, speed, peak;
-    hsize_t channels, elements, sent;
+    unsigned long long channels, elements, sent;
     const char *left_out;
 };
 
@@ -38,7 +36,7 @@ static void zea_make(int channels)
     zea.fc = 5e6;
     zea.speed = 1540;
     zea.peak = 0.3e-6;
-    zea.channels = (hsize_t)channels;
+    zea.channels = (unsigned long long)channels;
     zea.elements = ELEMENTS;
     zea.sent = SENT;
     for (int e = 0; e < ELEMENTS; e++) {
@@ -62,77 +60,57 @@ static void zea_make(int channels)
     }
 }
 
-static void zea_write(const char *name)
-{
-    const hid_t file = H5Fcreate(path_in(name), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    const struct {
-        const char *name;
-        const void *values;
-        int rank;
-        hsize_t dims[5];
-    } sets[] = {{"data/raw_data", zea.raw, 5, {FRAMES, SENT, DEPTHS, ELEMENTS, zea.channels}},
-                {"scan/probe_geometry", zea.probe, 2, {zea.elements, 3}},
-                {"scan/sampling_frequency", &zea.fs, 0, {0}},
-                {"scan/center_frequency", &zea.fc, 0, {0}},
-                {"scan/sound_speed", &zea.speed, 0, {0}},
-                {"scan/initial_times", zea.first, 1, {zea.sent}},
-                {"scan/t0_delays", zea.delays, 2, {zea.sent, ELEMENTS}},
-                {"scan/tx_apodizations", zea.weights, 2, {zea.sent, ELEMENTS}},
-                {"scan/t_peak", &zea.peak, 0, {0}}};
-    for (size_t k = 0; k < COUNT_OF(sets); k++)
-        if (!zea.left_out || strcmp(sets[k].name, zea.left_out) != 0)
-            set_write(file, sets[k].name, k ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, sets[k].rank, sets[k].dims,
-                      sets[k].values);
-    H5Fclose(file);
-}
+#define ZEA_SETS                                                                                                       \
+    {                                                                                                                  \
+        {"data/raw_data", zea.raw, true, 5, {FRAMES, SENT, DEPTHS, ELEMENTS, zea.channels}},                           \
+            {"scan/probe_geometry", zea.probe, false, 2, {zea.elements, 3}},                                           \
+            {"scan/sampling_frequency", &zea.fs, false, 0, {0}}, {"scan/center_frequency", &zea.fc, false, 0, {0}},    \
+            {"scan/sound_speed", &zea.speed, false, 0, {0}}, {"scan/initial_times", zea.first, false, 1, {zea.sent}},  \
+            {"scan/t0_delays", zea.delays, false, 2, {zea.sent, ELEMENTS}},                                            \
+            {"scan/tx_apodizations", zea.weights, false, 2, {zea.sent, ELEMENTS}},                                     \
+            {"scan/t_peak", &zea.peak, false, 0, {0}},                                                                 \
+    }
 
 static const struct raster below = {4e-4, 5.9e-3, 3e-5};
 
-/* Delay and sum; a record between its samples by the sum of its frequencies. */
+/* Delay and sum. */
 static void zea_sum(double complex *image)
 {
-    const int channels = (int)zea.channels, first = channels == 2 ? -DEPTHS / 2 : 1;
+    const int channels = (int)zea.channels;
     for (int record = 0; record < RECORDS; record++) {
-        const int element = record % ELEMENTS, frame_sent = record / ELEMENTS;
-        double complex spectrum[DEPTHS] = {0};
-        for (int k = first; k < DEPTHS / 2; k++)
-            for (int n = 0; n < DEPTHS; n++) {
-                const float *raw = zea.raw + ((frame_sent * DEPTHS + n) * ELEMENTS + element) * channels;
-                spectrum[k - first] += (channels == 2 ? raw[0] + I * raw[1] : 2 * raw[0])
-                                       * cexp(-2 * M_PI * I * ((double)(k * n % DEPTHS) / DEPTHS)) / DEPTHS;
-            }
-        for (int i = 0; i < GRID * GRID; i++) {
-            const double delay = zea_delay(frame_sent % SENT, element, pixel_x(&below, i), pixel_r(&below, i));
-            double complex sum = 0;
-            for (int k = first; k < DEPTHS / 2; k++)
-                sum += spectrum[k - first] * cexp(2 * M_PI * I * (k * zea.fs / DEPTHS) * delay);
-            image[i] += channels == 2 ? sum * cexp(2 * M_PI * I * zea.fc * delay) : sum;
+        const int element = record % ELEMENTS, ping = record / ELEMENTS;
+        double complex samples[DEPTHS];
+        double delays[GRID * GRID];
+        for (int n = 0; n < DEPTHS; n++) {
+            const float *raw = zea.raw + ((ping * DEPTHS + n) * ELEMENTS + element) * channels;
+            samples[n] = channels == 2 ? raw[0] + I * raw[1] : raw[0];
         }
+        for (int i = 0; i < GRID * GRID; i++)
+            delays[i] = zea.fs * zea_delay(ping % SENT, element, pixel_x(&below, i), pixel_r(&below, i));
+        record_add(samples, DEPTHS, channels == 1, delays, channels == 2 ? zea.fc / zea.fs : 0, image);
     }
 }
 
 static void zea_files_focus(void **state)
 {
     (void)state;
-    static const char *const convert[ARGUMENTS_MAX] = {"convert", "echo.hdf5", "-o", "echo.mat"};
     for (int channels = 1; channels <= 2; channels++) {
         double complex image[GRID * GRID] = {0};
         zea_make(channels);
-        zea_write("echo.hdf5");
+        const struct set sets[] = ZEA_SETS;
+        sets_write("echo.hdf5", sets, COUNT_OF(sets), NULL);
         zea_sum(image);
-        char *told = program_output(convert);
-        assert_non_null(strstr(told, channels == 1
-                                         ? "zea ultrasound: 6 pings, 8 receivers, 100 samples\nbandwidth is not"
-                                         : "zea ultrasound: 6 pings, 8 receivers, 200 samples\nbandwidth is not"));
-        free(told);
-        assert_image("echo.mat", &below, image);
+        assert_converted("echo.hdf5",
+                         channels == 1 ? "zea ultrasound, 6 pings, 8 receivers, 100 samples\nbandwidth is stated"
+                                       : "zea ultrasound, 6 pings, 8 receivers, 200 samples\nbandwidth is stated",
+                         &below, image);
     }
 }
 
 static void assert_zea_refused(const char *field, const char *reason)
 {
-    zea_write("bad.h5");
-    assert_field_refused(NULL, "bad.h5", field, reason);
+    const struct set sets[] = ZEA_SETS;
+    ASSERT_SETS_REFUSED(sets, zea.left_out, field, reason);
 }
 
 static void zea_faults_are_named(void **state)
