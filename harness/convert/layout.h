@@ -15,7 +15,7 @@ struct layout {
     enum status (*read)(const char *const *paths, int count, struct recording *recording);
 };
 
-extern const struct layout airsas_layout, gotcha_layout, zea_layout;
+extern const struct layout airsas_layout, gotcha_layout, uff_layout, zea_layout;
 
 /* variables_read and fields_check. Same ownership and errors. */
 enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables);

@@ -8,7 +8,7 @@
 #include "echoes/matfile.h"
 #include "text/text_append.h"
 
-static const struct layout *const layouts[] = {&gotcha_layout, &airsas_layout, &zea_layout};
+static const struct layout *const layouts[] = {&gotcha_layout, &airsas_layout, &uff_layout, &zea_layout};
 
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
