@@ -4,7 +4,6 @@
 
 #include "command/task.h"
 #include "convert/layouts.h"
-#include "echoes/matfile.h"
 
 /* A recording must not be replaced by its echoes. */
 static enum status inputs_check(const struct task *task)
@@ -32,7 +31,9 @@ enum status command_convert(const struct task *task)
         return status;
     const struct acquisition *a = &recording.acquisition;
     snprintf(description, sizeof description, "converted from %s", recording.layout);
-    status = echo_file_write(task->output, &recording.echoes, &(struct echo_notes){.description = description});
+    const struct echo_notes notes = {.description = description};
+    status = recording.source.pings ? echo_file_stream(task->output, a, &recording.source, &notes)
+                                    : echo_file_write(task->output, &recording.echoes, &notes);
     if (status == STATUS_OK)
         printf("%s: %s, %d pings, %d receiver%s, %d samples\n%s%s", task->output, recording.layout, a->pings,
                a->receivers, a->receivers == 1 ? "" : "s", a->samples, recording.note, *recording.note ? "\n" : "");

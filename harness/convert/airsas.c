@@ -276,4 +276,4 @@ static enum status airsas_read(const char *const *paths, int count, struct recor
     return status;
 }
 
-const struct layout airsas_layout = {"AirSAS", fields, FIELDS, false, airsas_read};
+const struct layout airsas_layout = {"AirSAS", fields, FIELDS, false, NULL, airsas_read};

@@ -203,4 +203,4 @@ static enum status gotcha_read(const char *const *paths, int count, struct recor
     return status == STATUS_OK ? gotcha_fill(paths, count, &steps, a, (double complex *)echoes->samples) : status;
 }
 
-const struct layout gotcha_layout = {"AFRL Gotcha phase history", fields, FIELDS, true, gotcha_read};
+const struct layout gotcha_layout = {"AFRL Gotcha phase history", fields, FIELDS, true, NULL, gotcha_read};

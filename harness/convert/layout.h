@@ -10,12 +10,13 @@ struct layout {
     const struct wanted *fields;
     int field_count; /* <= WANTED_MAX */
     bool takes_several;
+    const char *begin; /* what its files begin with, rather than having fields; NULL: fields */
     /* Read `count` files of it. *recording is zeroed before and the caller's afterwards, also after a failure. Errors:
        STATUS_INVALID naming file, field, value and what is accepted; STATUS_FAILED without memory. */
     enum status (*read)(const char *const *paths, int count, struct recording *recording);
 };
 
-extern const struct layout airsas_layout, gotcha_layout, uff_layout, zea_layout;
+extern const struct layout airsas_layout, cphd_layout, gotcha_layout, uff_layout, zea_layout;
 
 /* variables_read and fields_check. Same ownership and errors. */
 enum status fields_read(const char *path, const struct wanted *fields, int count, struct variable *variables);

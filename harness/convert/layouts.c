@@ -3,12 +3,13 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 
 #include "convert/layout.h"
-#include "echoes/matfile.h"
 #include "text/text_append.h"
 
-static const struct layout *const layouts[] = {&gotcha_layout, &airsas_layout, &uff_layout, &zea_layout};
+static const struct layout *const layouts[] = {&gotcha_layout, &airsas_layout, &cphd_layout, &uff_layout, &zea_layout};
 
 enum { LAYOUTS = sizeof layouts / sizeof *layouts };
 
@@ -70,20 +71,40 @@ static enum status fields_count(const char *path, const struct layout *layout, i
     return status;
 }
 
+/* The layout whose files begin as this one does; NULL: none. */
+static const struct layout *layout_by_beginning(const char *path)
+{
+    char begin[16] = "";
+    struct stat stats;
+    FILE *file = stat(path, &stats) == 0 && S_ISREG(stats.st_mode) ? fopen(path, "rb") : NULL;
+    if (file) {
+        begin[fread(begin, 1, sizeof begin - 1, file)] = '\0';
+        fclose(file);
+    }
+    for (int k = 0; k < LAYOUTS; k++)
+        if (layouts[k]->begin && strncmp(begin, layouts[k]->begin, strlen(layouts[k]->begin)) == 0)
+            return layouts[k];
+    return NULL;
+}
+
 static enum status layout_find(const char *path, const struct layout **layout)
 {
     char known[600] = "";
     int most = 0;
+    *layout = layout_by_beginning(path);
+    if (*layout)
+        return STATUS_OK;
     for (int k = 0; k < LAYOUTS; k++) {
         int found = 0;
-        const enum status status = fields_count(path, layouts[k], &found);
+        const enum status status = layouts[k]->fields ? fields_count(path, layouts[k], &found) : STATUS_OK;
         if (status != STATUS_OK)
             return status;
         if (found > most) {
             most = found;
             *layout = layouts[k];
         }
-        text_append(known, sizeof known, "%s%s (%s, ...)", k ? ", " : "", layouts[k]->name, layouts[k]->fields[0].name);
+        text_append(known, sizeof known, "%s%s (%s, ...)", k ? ", " : "", layouts[k]->name,
+                    layouts[k]->fields ? layouts[k]->fields[0].name : layouts[k]->begin);
     }
     return most > 0 ? STATUS_OK
                     : status_set(STATUS_INVALID, "%s: has no field of a known layout; known: %s", path, known);
@@ -91,6 +112,8 @@ static enum status layout_find(const char *path, const struct layout **layout)
 
 void recording_free(struct recording *recording)
 {
+    if (recording->source_close)
+        recording->source_close(recording->source.with);
     echoes_free(&recording->echoes);
     acquisition_free(&recording->acquisition);
 }

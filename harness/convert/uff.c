@@ -214,4 +214,4 @@ static enum status uff_read(const char *const *paths, int count, struct recordin
     return status;
 }
 
-const struct layout uff_layout = {"USTB ultrasound (UFF)", fields, FIELDS, false, uff_read};
+const struct layout uff_layout = {"USTB ultrasound (UFF)", fields, FIELDS, false, NULL, uff_read};

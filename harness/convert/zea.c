@@ -133,4 +133,4 @@ static enum status zea_read(const char *const *paths, int count, struct recordin
     return status;
 }
 
-const struct layout zea_layout = {"zea ultrasound", fields, FIELDS, false, zea_read};
+const struct layout zea_layout = {"zea ultrasound", fields, FIELDS, false, NULL, zea_read};
