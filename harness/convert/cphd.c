@@ -17,6 +17,7 @@
 #define LIGHT_SPEED 299792458.0 /* m/s */
 /* s: the atmosphere's part of RcvTime - TxTime, which the geometry has not; ionosphere at 400 MHz: some 1e-6. */
 #define ATMOSPHERE_MOST 1e-5
+#define FACTOR_MOST     1e200 /* samples of class single times it stay far from the end of doubles */
 /* Of a step: what the last sample of a vector may be off by a step of its own; the ends of records turn by 3e-3 rad. */
 #define UNEVEN_MOST 1e-3
 
@@ -135,6 +136,8 @@ static enum status vectors_read(struct cphd *cphd, const struct frame *frame, st
             return cphd_refuse(file, CPHD_SCSS, p, why);
         if (file->is_toa && !(low > 0 && band > 0 && band * step <= 1))
             return cphd_refuse(file, CPHD_FX2, p, "and `PVP/FX1` are no band above 0 that `PVP/SCSS` samples");
+        if (!(v[CPHD_AMP_SF].x > 0 && v[CPHD_AMP_SF].x <= FACTOR_MOST))
+            return cphd_refuse(file, CPHD_AMP_SF, p, "is no factor > 0 of at most 1e200");
         const double middle = file->is_toa ? low + band / 2 : v[CPHD_SC0].x + file->samples / 2 * step;
         *width = fmax(*width, file->is_toa ? band : file->samples * step);
         cphd->reference[p] = delay;

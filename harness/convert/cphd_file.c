@@ -102,6 +102,13 @@ static enum status word(const struct cphd_file *file, const char *field, const c
     return status == STATUS_OK ? field_refuse(file, field, text, accepted) : status;
 }
 
+/* So much of a line is shown. */
+static int shown(const char *text)
+{
+    const size_t length = strcspn(text, "\r\n");
+    return length < 40 ? (int)length : 40;
+}
+
 /* A line "KEY := NUMBER" of the head. */
 static enum status head_number(const struct cphd_file *file, const char *head, const char *key, long long most,
                                long long *value)
@@ -114,7 +121,7 @@ static enum status head_number(const struct cphd_file *file, const char *head, c
         return STATUS_OK;
     return status_set(STATUS_INVALID,
                       "%s: variable `%s` of its head is %s%.*s; a whole number from 0 to %lld is needed", file->path,
-                      key, found ? "" : "missing", (int)strcspn(text, "\r\n") % 40, text, most);
+                      key, found ? "" : "missing", shown(text), text, most);
 }
 
 /* A block's place, in the file as a whole. */
@@ -165,23 +172,24 @@ static enum status xml_block_read(struct cphd_file *file, off_t at, off_t size)
 /* The reference channel among all. */
 static enum status channel_find(struct cphd_file *file)
 {
-    const char *reference, *other;
-    enum status status = cphd_text(file, "Channel/RefChId", "the identifier of a channel", &reference);
+    static const char packed[] = "Data/Channel/CompressedSignalSize";
+    const char *reference;
+    const enum status status = cphd_text(file, "Channel/RefChId", "the identifier of a channel", &reference);
+    if (status != STATUS_OK)
+        return status;
+    file->channels = 0;
     file->channel = -1;
-    for (file->channels = 0; status == STATUS_OK; file->channels++) {
-        other = xml_text(&file->xml, "Data/Channel/Identifier", file->channels);
-        if (!other)
-            break;
-        if (file->channel < 0 && strcmp(other, reference) == 0)
+    for (int k = 0; k < file->xml.count; k++) {
+        if (strcmp(file->xml.leaves[k].path, "Data/Channel/Identifier") != 0)
+            continue;
+        if (file->channel < 0 && strcmp(file->xml.leaves[k].text, reference) == 0)
             file->channel = file->channels;
+        file->channels++;
     }
-    if (status == STATUS_OK && file->channel < 0)
-        status = field_refuse(file, "Channel/RefChId", reference, "one of `Data/Channel/Identifier`");
-    if (status == STATUS_OK && xml_text(&file->xml, "Data/Channel/CompressedSignalSize", 0))
-        status =
-            field_refuse(file, "Data/Channel/CompressedSignalSize",
-                         xml_text(&file->xml, "Data/Channel/CompressedSignalSize", 0), "a signal that is not packed");
-    return status;
+    if (file->channel < 0)
+        return field_refuse(file, "Channel/RefChId", reference, "one of `Data/Channel/Identifier`");
+    const char *size = xml_text(&file->xml, packed, 0);
+    return size ? field_refuse(file, packed, size, "a signal that is not packed") : STATUS_OK;
 }
 
 static enum status signal_describe(struct cphd_file *file)
@@ -200,7 +208,7 @@ static enum status signal_describe(struct cphd_file *file)
     if (status == STATUS_OK)
         status = whole(file, "Data/Channel/NumVectors", file->channel, 1, INT_MAX, &vectors);
     if (status == STATUS_OK)
-        status = whole(file, "Data/Channel/NumSamples", file->channel, 2, INT_MAX / 4, &samples);
+        status = whole(file, "Data/Channel/NumSamples", file->channel, 2, INT_MAX / 8, &samples);
     if (status == STATUS_OK)
         status = whole(file, "Data/NumBytesPVP", 0, WORD, INT_MAX, &vector_bytes);
     file->is_toa = domain == 1;
@@ -288,8 +296,9 @@ enum status cphd_open(const char *path, struct cphd_file *file)
     if (status == STATUS_OK) {
         char *end = strstr(head, "\f\n");
         if (strncmp(head, "CPHD/1.", 7) != 0 || !end)
-            status = status_set(STATUS_INVALID, "%s: begins with '%.*s'; a head of CPHD/1.0 or CPHD/1.1 is needed",
-                                path, (int)strcspn(head, "\r\n") % 40, head);
+            status =
+                status_set(STATUS_INVALID, "%s: begins with '%.*s'%s; a whole head of CPHD/1.0 or CPHD/1.1 is needed",
+                           path, shown(head), head, end ? "" : ", a head without end");
         else
             *end = '\0';
     }

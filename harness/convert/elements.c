@@ -35,6 +35,8 @@ enum status elements_open(const char *path, const struct elements *elements, str
         return status_set(STATUS_INVALID, "%s: variable `%s` is %g Hz, `%s` %g Hz; %s is needed", path,
                           elements->fc_field->name, elements->fc, elements->rate_field->name, rate,
                           elements->fc_field->accepted);
+    if (!(a->sound_speed > 0))
+        return status_set(STATUS_INVALID, "%s: the sound speed is %g m/s; a speed > 0 is needed", path, a->sound_speed);
     a->samples = real ? 2 * half_band(elements) : elements->samples;
     a->fs = real ? a->samples * step : rate;
     a->fc = real ? middle_bin(elements) * step : elements->fc;

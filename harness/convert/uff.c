@@ -104,7 +104,7 @@ static enum status wave_place(const char *path, const struct wave *wave, const s
             *sender = e;
         }
     }
-    *after = wave_number(wave, DELAY, 0) + (source.y < BEHIND ? distance : -distance) / a->sound_speed;
+    *after = wave_number(wave, DELAY, 0) + (source.y < BEHIND ? 1 : -1) * vector_norm(source) / a->sound_speed;
     if (nearest <= ACQUISITION_UNEVEN_MOST * wavelength)
         return STATUS_OK;
     return status_set(STATUS_INVALID,
@@ -204,8 +204,11 @@ static enum status uff_read(const char *const *paths, int count, struct recordin
     if (v[REAL].values && !v[IMAG].values)
         status = status_set(STATUS_INVALID, "%s: variable `%s` is missing; %s is needed", paths[0], fields[IMAG].name,
                             fields[IMAG].accepted);
-    else if (!v[REAL].values)
+    else if (!v[REAL].values) {
         status = fields_read(paths[0], &real_data, 1, &v[REAL]);
+        if (status != STATUS_OK)
+            v[REAL].values = NULL; /* freed already */
+    }
     if (status == STATUS_OK)
         status = shapes_check(paths[0], v);
     if (status == STATUS_OK)

@@ -402,7 +402,7 @@ static void cphd_vectors_are_checked(void **state)
     (void)state;
     skip_without_expat();
     static const struct refusal refusals[] = {
-        {{"convert", "old.cphd", "-o", "none.mat"}, {"old.cphd: begins with 'CPHD/0.3'; a head of CPHD/1.0 or"}},
+        {{"convert", "old.cphd", "-o", "none.mat"}, {"old.cphd: begins with 'CPHD/0.3'; a whole head of CPHD/1.0"}},
         {{"convert", "cut.cphd", "-o", "none.mat"},
          {"cut.cphd: variable `SIGNAL_BLOCK_SIZE` of its head", "whole file"}},
         {{"convert", "torn.cphd", "-o", "none.mat"}, {"torn.cphd: its XML is damaged at line 3"}},
@@ -417,6 +417,8 @@ static void cphd_vectors_are_checked(void **state)
     assert_cphd_refused("PVP/SCSS` of vector 1", "step > 0");
     cphd.words[5][SC0] += 1e9;
     assert_cphd_refused("PVP/SC0` of vector 6", "too far from the other vectors'");
+    cphd.words[1][AMP] = 0;
+    assert_cphd_refused("PVP/AmpSF` of vector 2", "is no factor > 0");
     cphd.words[7][RCV_VEL + 1] = NAN;
     assert_cphd_refused("PVP/RcvVel` of vector 8", "is no finite number");
     cphd_make(true, -1, "CF8", true, 1);

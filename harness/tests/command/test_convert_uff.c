@@ -206,6 +206,9 @@ static void uff_faults_are_named(void **state)
     uff.modulation = 5e6F;
     assert_uff_refused("modulation_frequency", "is 5e+06 Hz of real data");
     uff_make(false);
+    uff.real[7] = INFINITY;
+    assert_uff_refused("data", "at (8, 1, 1) is inf");
+    uff_make(false);
     uff.centre = 10e6F;
     assert_uff_refused("pulse/center_frequency", "is 1e+07 Hz, `channel_data/sampling_frequency` 2e+07 Hz");
     uff.left_out = "channel_data/data";
