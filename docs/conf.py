@@ -1,0 +1,23 @@
+"""The pages as a site: ninja -C build docs. Its source is the repository's root, so that links lead to the same files as
+in a clone; those to files that are no pages are downloads."""
+project = 'sasbench'
+author = 'the sasbench authors'
+extensions = ['myst_parser']
+html_theme = 'furo'
+html_title = project
+html_static_path = ['site.css']
+html_css_files = ['site.css']
+root_doc = 'docs/index'
+include_patterns = ['*.md', 'docs/*.md', 'docs/papers/*.md', 'algorithms/README.md', 'results/README.md',
+                    'scenes/README.md']
+myst_heading_anchors = 3
+
+
+def first_page(app, error):
+    if not error and app.builder.name == 'html':
+        with open(f'{app.outdir}/index.html', 'w') as page:
+            page.write('<!doctype html><meta http-equiv="refresh" content="0; url=docs/index.html">\n')
+
+
+def setup(app):
+    app.connect('build-finished', first_page)
