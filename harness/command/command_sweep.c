@@ -15,33 +15,6 @@
 /* A point, speckle, and the two ends of the range. */
 static const char *const default_scenes[] = {"sweep/point", "sweep/speckle", "sweep/near", "sweep/far"};
 
-/* In the requested precision, if there is one and the SPEC has none of its own. */
-static enum status add(const struct task *task, const struct spec *spec, struct sweep_settings *settings)
-{
-    struct spec fixed;
-    if (!task->precision || spec_given(spec, "precision"))
-        return settings_add(settings, spec);
-    enum status status = spec_vary(spec, "precision", task->precision, &fixed);
-    if (status != STATUS_OK)
-        return status;
-    status = settings_add(settings, &fixed);
-    spec_free(&fixed);
-    return status;
-}
-
-/* The exact image comes first: the others save its cost, and their PSLR and ISLR are compared with its. */
-static enum status settings_load(const struct task *task, struct sweep_settings *settings)
-{
-    struct spec spec;
-    enum status status = spec_parse("reference", &spec);
-    if (status == STATUS_OK)
-        status = settings_add(settings, &spec);
-    spec_free(&spec);
-    for (int k = 0; k < task->spec_count && status == STATUS_OK; k++)
-        status = add(task, &task->specs[k], settings);
-    return status;
-}
-
 /* Does one of them choose by the machine's rates? */
 static bool settings_choose(const struct sweep_settings *settings)
 {
@@ -90,7 +63,7 @@ enum status command_sweep(const struct task *task)
     if (status == STATUS_OK)
         status = precision_check(task);
     if (status == STATUS_OK)
-        status = settings_load(task, &settings);
+        status = settings_load(task->spec_count, task->specs, task->precision, &settings);
     if (status == STATUS_OK)
         status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
     if (status == STATUS_OK)

@@ -6,18 +6,40 @@
 #include <string.h>
 
 #include "echoes/echo_data.h"
+#include "gate/diff.h"
 #include "guests/plugin.h"
 #include "library/library.h"
 #include "measure/outcome.h"
 #include "metrics/metrics.h"
 #include "results/measurement.h"
+#include "run/visit.h"
+#include "sweep/sweep_settings.h"
+
+/* A struct finding of gate/diff.h as a row. */
+struct finding_row {
+    const char *verdict, *class, *scene, *spec, *detail, *metric, *unit;
+    double before, after, change, slack;
+    const char *before_text, *after_text;
+};
+
+#define F_COLUMN(kind, name)                                                                                           \
+    {                                                                                                                  \
+#name, COLUMN_##kind, offsetof(struct finding_row, name), .unit = NULL                                         \
+    }
+static const struct column finding_columns[] = {
+    F_COLUMN(TEXT, verdict),    F_COLUMN(TEXT, class),  F_COLUMN(TEXT, scene), F_COLUMN(TEXT, spec),
+    F_COLUMN(TEXT, detail),     F_COLUMN(TEXT, metric), F_COLUMN(TEXT, unit),  F_COLUMN(REAL, before),
+    F_COLUMN(REAL, after),      F_COLUMN(REAL, change), F_COLUMN(REAL, slack), F_COLUMN(TEXT, before_text),
+    F_COLUMN(TEXT, after_text), {.name = NULL}};
 
 _Static_assert((int)COLUMN_TEXT == SASBENCH_TEXT && (int)COLUMN_REAL == SASBENCH_REAL, "one type");
 
 static const struct kind {
     const struct column *columns;
     size_t size;
-} kinds[] = {{measurement_columns, sizeof(struct measurement)}, {target_columns, sizeof(struct target_row)}};
+} kinds[] = {{measurement_columns, sizeof(struct measurement)},
+             {target_columns, sizeof(struct target_row)},
+             {finding_columns, sizeof(struct finding_row)}};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 struct sasbench_table {
@@ -236,5 +258,76 @@ int sasbench_run(struct sasbench_scene *scene, const char *text, int precision, 
         outcome_free(&outcome);
     }
     spec_free(&spec);
+    return turn_end(threads, status);
+}
+
+/* Settings in turn, as the command times them. */
+static enum status turns_measure(struct session *session, const struct sweep_settings *settings, int first, bool timed,
+                                 struct sasbench_table *table)
+{
+    const int end = first + TURNS < settings->count ? first + TURNS : settings->count;
+    struct timing_samples *samples = calloc(TURNS, sizeof *samples);
+    enum status status = samples ? STATUS_OK : status_set(STATUS_FAILED, "no memory for %d settings", TURNS);
+    for (int round = 1; round < TIMING_ROUNDS && timed && samples; round++)
+        for (int k = first; k < end; k++)
+            outcome_round(session, &settings->specs[k], &samples[k - first]);
+    for (int k = first; k < end && status == STATUS_OK; k++) {
+        struct outcome outcome;
+        outcome_measure(session, &settings->specs[k], timed ? EFFORT_WHOLE : EFFORT_NONE,
+                        timed ? &samples[k - first] : NULL, &outcome);
+        status = outcome_add(&outcome, table);
+        outcome_free(&outcome);
+    }
+    free(samples);
+    return status;
+}
+
+int sasbench_sweep(struct sasbench_scene *scene, int count, const char *const *texts, const char *precision, int timed,
+                   struct sasbench_table *table)
+{
+    const int threads = turn_begin(scene->context, TURN_ALONE);
+    struct sweep_settings settings = {0};
+    int taken = 0;
+    struct spec *specs = count >= 0 ? calloc((size_t)count + 1, sizeof *specs) : NULL;
+    enum status status =
+        specs ? STATUS_OK : status_set(STATUS_INVALID, "a sweep of %d SPECs, must be 0 or more", count);
+    for (; taken < count && status == STATUS_OK; taken += status == STATUS_OK)
+        status = spec_own(texts[taken], &specs[taken]);
+    if (status == STATUS_OK)
+        status = settings_load(taken, specs, precision, &settings);
+    if (status == STATUS_OK)
+        status = session_need(scene);
+    for (int k = 0; k < settings.count && status == STATUS_OK; k += TURNS)
+        status = turns_measure(&scene->session, &settings, k, timed, table);
+    settings_free(&settings);
+    for (int k = 0; k < taken; k++)
+        spec_free(&specs[k]);
+    free(specs);
+    return turn_end(threads, status);
+}
+
+int sasbench_compare(const char *before, const char *after, struct sasbench_table *table)
+{
+    const int threads = turn_begin(NULL, TURN_NONE);
+    struct diff diff = {0};
+    enum status status = diff_results(before, after, &diff);
+    for (int k = 0; k < diff.finding_count && status == STATUS_OK; k++) {
+        const struct finding *f = &diff.findings[k];
+        const struct finding_row row = {verdict_names[f->verdict],
+                                        class_names[f->class],
+                                        f->scene,
+                                        f->spec,
+                                        f->detail,
+                                        f->metric,
+                                        f->unit,
+                                        f->before,
+                                        f->after,
+                                        f->change,
+                                        f->slack,
+                                        f->before_text ? f->before_text : "",
+                                        f->after_text ? f->after_text : ""};
+        status = row_add(table, SASBENCH_FINDINGS, &row);
+    }
+    diff_free(&diff);
     return turn_end(threads, status);
 }

@@ -89,8 +89,9 @@ int sasbench_plan_precision(const struct sasbench_plan *plan);
 int sasbench_execute(struct sasbench_plan *plan, int precision, const void *samples, void *const *pixels);
 void sasbench_plan_free(struct sasbench_plan *plan);
 
-/* Rows of measurements and of point targets, with the columns of measurements.csv and targets.csv. */
-enum sasbench_rows { SASBENCH_MEASUREMENTS, SASBENCH_TARGETS };
+/* Rows of measurements and of point targets, with the columns of measurements.csv and targets.csv; and what
+   sasbench_compare found. */
+enum sasbench_rows { SASBENCH_MEASUREMENTS, SASBENCH_TARGETS, SASBENCH_FINDINGS };
 enum sasbench_type { SASBENCH_TEXT, SASBENCH_INTEGER, SASBENCH_REAL };
 /* Released by sasbench_table_free. Errors: SAS_FAILED. */
 int sasbench_table(struct sasbench_table **table);
@@ -113,6 +114,16 @@ int sasbench_score(struct sasbench_scene *scene, const char *name, int precision
    as well. While it is timed nothing else should run. Errors: SAS_INVALID for the SPEC, SAS_FAILED. */
 int sasbench_run(struct sasbench_scene *scene, const char *spec, int precision, const struct sas_algorithm *own,
                  int timed, struct sasbench_table *table);
+/* Measure SPECs [count] over their settings as `sasbench sweep`, the exact image first, and add their rows.
+   `precision`: "float" or "double" where a SPEC states none; NULL: both. `timed`: as of sasbench_run. Errors:
+   SAS_INVALID for a SPEC or the precision, SAS_FAILED. */
+int sasbench_sweep(struct sasbench_scene *scene, int count, const char *const *specs, const char *precision, int timed,
+                   struct sasbench_table *table);
+/* Compare two results folders or CSV files as `sasbench compare`, and add a row for each finding: `verdict` (worse,
+   gone, changed, better, new, same), its class (quality, work, time), scene, SPEC, target, metric and unit, the values
+   `before` and `after` (texts where they are no numbers), the relative `change` and the `slack` within which values
+   count as the same. Errors: SAS_INVALID naming file, line, column and value; SAS_FAILED. */
+int sasbench_compare(const char *before, const char *after, struct sasbench_table *table);
 
 #ifdef __cplusplus
 }

@@ -75,3 +75,29 @@ enum status settings_add(struct sweep_settings *settings, const struct spec *sta
     settings_free(&own);
     return status;
 }
+
+static enum status add(const struct spec *spec, const char *precision, struct sweep_settings *settings)
+{
+    struct spec fixed;
+    if (!precision || spec_given(spec, "precision"))
+        return settings_add(settings, spec);
+    enum status status = spec_vary(spec, "precision", precision, &fixed);
+    if (status != STATUS_OK)
+        return status;
+    status = settings_add(settings, &fixed);
+    spec_free(&fixed);
+    return status;
+}
+
+/* The exact image comes first: the others save its cost, and their PSLR and ISLR are compared with its. */
+enum status settings_load(int count, const struct spec *specs, const char *precision, struct sweep_settings *settings)
+{
+    struct spec spec;
+    enum status status = spec_parse("reference", &spec);
+    if (status == STATUS_OK)
+        status = settings_add(settings, &spec);
+    spec_free(&spec);
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        status = add(&specs[k], precision, settings);
+    return status;
+}

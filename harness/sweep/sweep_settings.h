@@ -15,6 +15,9 @@ struct sweep_settings {
    once, unchanged. Errors: STATUS_FAILED without memory; STATUS_INVALID when `sweep` names a value that the param
    refuses. */
 enum status settings_add(struct sweep_settings *settings, const struct spec *start);
+/* The exact image, then these SPECs over their settings; in `precision`, "float" or "double", where a SPEC states none
+   (NULL: in both). Errors: as settings_add, spec_vary. */
+enum status settings_load(int count, const struct spec *specs, const char *precision, struct sweep_settings *settings);
 void settings_free(struct sweep_settings *settings);
 
 #endif

@@ -30,10 +30,11 @@ from .scenes import (
     threads,
     version,
 )
-from .tables import run, score, targets
+from .tables import compare, run, score, sweep, targets
 
 __version__ = version()
 __all__ = [
-    "Acquisition", "Algorithm", "Error", "Grid", "Plan", "Scene", "Unsupported", "algorithm", "algorithms", "front",
-    "image", "load", "make", "plan", "reference", "run", "scene", "score", "show", "simulate", "targets", "threads",
+    "Acquisition", "Algorithm", "Error", "Grid", "Plan", "Scene", "Unsupported", "algorithm", "algorithms", "compare",
+    "front", "image", "load", "make", "plan", "reference", "run", "scene", "score", "show", "simulate", "sweep",
+    "targets", "threads",
 ]  # fmt: skip

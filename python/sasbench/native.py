@@ -126,6 +126,8 @@ FUNCTIONS = {
     "table_number": (c_double, [c_void_p, c_int, c_int, c_int]),
     "score": (c_int, [c_void_p, c_char_p, c_int, POINTER(c_void_p), c_double, c_void_p]),
     "run": (c_int, [c_void_p, c_char_p, c_int, POINTER(Algorithm), c_int, c_void_p]),
+    "sweep": (c_int, [c_void_p, c_int, POINTER(c_char_p), c_char_p, c_int, c_void_p]),
+    "compare": (c_int, [c_char_p, c_char_p, c_void_p]),
 }
 
 # Those that return a status.

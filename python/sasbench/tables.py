@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import csv
 import ctypes
 import math
+import os
+import tempfile
 from typing import Iterable, Optional, Union
 
 import numpy as np
 
 from . import native, own, scenes
 
-MEASUREMENTS, TARGETS = range(2)
+MEASUREMENTS, TARGETS, FINDINGS = range(3)
 TEXT, INTEGER, REAL = range(3)
+
+Scenes = Union[scenes.Scene, str, Iterable[Union[scenes.Scene, str]]]
+Results = Union[np.ndarray, np.void, str, os.PathLike]
 
 
 class Rows(np.ndarray):
@@ -49,14 +55,19 @@ def _read(table, kind: int) -> np.ndarray:
     return rows
 
 
-def _measured(add) -> Rows:
+def _filled(add, *kinds: int) -> list[np.ndarray]:
     table = native.make("table")
     try:
         add(table)
-        rows = _read(table, MEASUREMENTS).view(Rows)
-        rows.targets = _read(table, TARGETS)
+        return [_read(table, kind) for kind in kinds]
     finally:
         native.call("table_free", table)
+
+
+def _measured(add) -> Rows:
+    measurements, targets = _filled(add, MEASUREMENTS, TARGETS)
+    rows = measurements.view(Rows)
+    rows.targets = targets
     return rows
 
 
@@ -84,8 +95,13 @@ def _scored(scene: scenes.Scene, image: scenes.Image, name: str, seconds: Option
     )
 
 
+def _scenes(asked: Scenes) -> list[scenes.Scene]:
+    listed = [asked] if isinstance(asked, (scenes.Scene, str)) else list(asked)
+    return [scenes.scene(s) if isinstance(s, str) else s for s in listed]
+
+
 def run(
-    scene: Union[scenes.Scene, str, Iterable[Union[scenes.Scene, str]]],
+    scene: Scenes,
     algorithms: Union[str, own.Algorithm, Iterable[Union[str, own.Algorithm]]],
     timed: bool = True,
 ) -> Rows:
@@ -95,8 +111,7 @@ def run(
     once, without times. The rows' attribute `targets` has those of the point targets. Nothing else should run
     meanwhile.
     """
-    listed = [scene] if isinstance(scene, (scenes.Scene, str)) else list(scene)
-    listed = [scenes.scene(s) if isinstance(s, str) else s for s in listed]
+    listed = _scenes(scene)
     asked = [algorithms] if isinstance(algorithms, (str, own.Algorithm)) else list(algorithms)
 
     def add(table):
@@ -108,3 +123,59 @@ def run(
                     native.call("run", s._handle, native.encoded(a, "SPEC"), native.FLOAT, None, int(timed), table)
 
     return _measured(add)
+
+
+def sweep(
+    scene: Scenes,
+    algorithms: Union[str, Iterable[str], None] = None,
+    precision: Optional[str] = None,
+    timed: bool = True,
+) -> Rows:
+    """Measure SPECs over their settings, as `sasbench sweep`: the rows of the exact image, then of each setting.
+
+    algorithms: None is all. A setting that a SPEC names stays. precision: "float" or "double"; None is both. `timed` as
+    of run. front(rows) draws error against run time.
+    """
+    listed = _scenes(scene)
+    asked = scenes.algorithms() if algorithms is None else [algorithms] if isinstance(algorithms, str) else algorithms
+    asked = list(asked)
+    specs = (ctypes.c_char_p * len(asked))(*[native.encoded(a, "SPEC") for a in asked])
+    which = None if precision is None else native.encoded(precision, "precision")
+
+    def add(table):
+        for s in listed:
+            native.call("sweep", s._handle, len(asked), specs, which, int(timed), table)
+
+    return _measured(add)
+
+
+def _write(rows: Union[np.ndarray, np.void], folder: str, name: str) -> str:
+    """As a file of the program, which has nine digits, and nothing for NaN and -1."""
+    if not rows.dtype.names:
+        raise native.Error(f"results: an array of {rows.dtype} has no columns; rows of run, or a path, are needed")
+    kind = "targets" if "axis" in rows.dtype.names else "measurements"
+    path = os.path.join(folder, name)
+    with open(path, "w", newline="", encoding="utf-8", errors="surrogateescape") as file:
+        file.write(f"# sasbench {kind} 1\n")
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(rows.dtype.names)
+        for row in np.atleast_1d(rows).tolist():
+            whole = [v if isinstance(v, float) or v != -1 else math.nan for v in row]
+            writer.writerow(["" if v != v else f"{v:.9g}" if isinstance(v, float) else v for v in whole])
+    return path
+
+
+def compare(old: Results, new: Results) -> np.ndarray:
+    """What differs between two results, as `sasbench compare`: a row a finding.
+
+    old, new: rows of run or sweep (or their `targets`), or the path of a results folder or of one of its CSV files. The
+    rows have `verdict` (worse, gone, changed, better, new, same), class, scene, spec, detail, metric, unit, the values
+    `before` and `after`, `change` (after/before - 1) and the `slack` within which values count as the same. Rows are
+    matched by scene, algorithm, options and precision. Nothing is raised where something got worse.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        old, new = (
+            native.encoded(_write(side, folder, name) if isinstance(side, (np.ndarray, np.void)) else side, "results")
+            for side, name in ((old, "old.csv"), (new, "new.csv"))
+        )
+        return _filled(lambda table: native.call("compare", old, new, table), FINDINGS)[0]

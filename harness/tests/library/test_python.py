@@ -223,6 +223,35 @@ class Python(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             sasbench.run(self.scene, interrupted, timed=False)
 
+    def test_sweeps_and_comparisons_are_the_programs(self):
+        folder = self.path("sweep")
+        program("sweep", "study/quick", "-a", "bp_sinc:taps=8", "--precision", "float", "-o", folder)
+        rows = sasbench.sweep("study/quick", "bp_sinc:taps=8", "float", timed=False)
+        self.assertEqual(list(rows["options"]), ["", "taps=8,window=none", "taps=8,window=kaiser"])
+        for found in (
+            sasbench.compare(folder, rows),
+            sasbench.compare(rows.targets, os.path.join(folder, "targets.csv")),
+        ):
+            self.assertEqual(set(found["verdict"]), {"same"})
+            self.assertEqual(set(found["scene"]), {"study/quick"})
+        other = rows.copy()
+        other["error"][1] *= 2
+        found = sasbench.compare(rows, other)
+        self.assertEqual(
+            [(f["verdict"], f["metric"], f["spec"]) for f in found if f["verdict"] != "same"],
+            [("worse", "error", "bp_sinc:taps=8,window=none")],
+        )
+        self.assertEqual(set(sasbench.compare(rows, rows[1])["verdict"]), {"gone", "same"})
+        self.assertGreater(sasbench.sweep(self.scene, [], "float")["run_s"][0], 0)
+        for words, call in {
+            "precision is 'half'": lambda: sasbench.sweep(self.scene, "bp_sinc", "half"),
+            "two of the same kind": lambda: sasbench.compare(rows, rows.targets),
+            "has no columns": lambda: sasbench.compare(rows["error"], rows),
+            "stands in line 3 already": lambda: sasbench.compare(rows, rows[[0, 0]]),
+        }.items():
+            with self.subTest(words), self.assertRaisesRegex(sasbench.Error, words):
+                call()
+
     def test_errors(self):
         nan = self.echoes.copy()
         nan[1, 2, 3] = np.nan
