@@ -93,9 +93,15 @@ static void limit_resource(__rlimit_resource_t resource, rlim_t wish)
     }
 }
 
+/* This process only reads; a thread that reads is in the process of another program, whose limits stay as they are. */
+static bool process_reads;
+
 /* Allow the process `bytes` more than it has mapped now, and the time to read them. */
 static void limit_memory_and_time(size_t bytes)
 {
+    if (!process_reads) {
+        return;
+    }
     limit_resource(RLIMIT_CPU, (rlim_t)(clock() / CLOCKS_PER_SEC) + 10 + bytes / 10000000);
 #ifndef SANITIZED /* its shadow memory alone is terabytes of address space */
     unsigned long pages;
@@ -374,6 +380,7 @@ _Noreturn void variables_send(const char *path, const struct wanted *wanted, int
     int silence = open("/dev/null", O_WRONLY);
     dup2(silence, STDERR_FILENO);
     limit_resource(RLIMIT_CORE, 0);
+    process_reads = true;
     limit_memory_and_time(SPARE_BYTES);
     variables_reply(path, wanted, count, file_size, descriptor);
     _exit(0); /* the parent's buffers and exit handlers are not ours */

@@ -4,6 +4,7 @@ import concurrent.futures
 import csv
 import importlib.util
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -79,10 +80,12 @@ class Python(unittest.TestCase):
 
     def test_files_are_the_programs(self):
         path = self.path("echoes.mat")
+        limits = [resource.getrlimit(which) for which in (resource.RLIMIT_AS, resource.RLIMIT_CPU)]
         program("simulate", "study/quick", "-o", path)
         samples = matlab.variables(path)["samples"]
         self.assert_same(self.echoes, np.transpose(samples, (2, 1, 0)))
         read = sasbench.load(path)
+        self.assertEqual([resource.getrlimit(which) for which in (resource.RLIMIT_AS, resource.RLIMIT_CPU)], limits)
         self.assert_same(sasbench.simulate(read), self.echoes)
         image = self.of_program("file", "bp_sinc:precision=double", "--echoes", path)
         self.assert_same(sasbench.image(read, "bp_sinc:precision=double"), image)
