@@ -1,6 +1,7 @@
 /* The library's scenes: from files and from arrays, their echoes and delays (libsasbench.h). */
 #include <ctype.h>
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -263,6 +264,81 @@ int sasbench_echoes(struct sasbench_scene *scene, int precision, void *samples)
     if (status == STATUS_OK)
         status = echoes_put(&scene->scene, &echoes, precision, samples);
     echoes_free(&echoes);
+    return turn_end(threads, status);
+}
+
+/* The scene with its pixels as points, without noise; `pixels` NULL: of amplitude 0. Free the targets. */
+static enum status pixels_take(const struct scene *from, const void *const *pixels, struct scene *scene)
+{
+    size_t count = 0;
+    *scene = *from;
+    scene->targets = NULL;
+    scene->recorded = NULL;
+    scene->noise_std = 0;
+    if (from->recorded)
+        scene->pulse_kind = from->acquisition.compressed ? PULSE_FLAT : PULSE_LFM;
+    for (int k = 0; k < scene->patch_count; k++)
+        count += (size_t)scene->patches[k].r_count * (size_t)scene->patches[k].x_count;
+    if (count > INT_MAX)
+        return status_set(STATUS_INVALID, "%s: %zu pixels, must be at most %d", scene->name, count, INT_MAX);
+    struct target *target = scene->targets = malloc(count * sizeof *target);
+    if (!target)
+        return status_set(STATUS_FAILED, "%s: no memory for %zu pixels", scene->name, count);
+    scene->point_count = scene->target_count = (int)count;
+    for (int k = 0; k < scene->patch_count; k++) {
+        const struct grid *grid = &scene->patches[k];
+        const double complex *amplitudes = pixels ? pixels[k] : NULL;
+        for (int i = 0; i < grid->r_count; i++)
+            for (int j = 0; j < grid->x_count; j++) {
+                const struct vector place = grid_point(grid, i, j);
+                *target++ = (struct target){place.x, place.y, amplitudes ? *amplitudes++ : 0};
+            }
+    }
+    for (size_t n = 0; n < count; n++)
+        if (!isfinite(creal(scene->targets[n].amplitude)) || !isfinite(cimag(scene->targets[n].amplitude)))
+            return status_set(STATUS_INVALID, "%s: pixel %zu of the reflectivity is not finite", scene->name, n);
+    return STATUS_OK;
+}
+
+int sasbench_forward(struct sasbench_scene *scene, const void *const *pixels, void *samples)
+{
+    const int threads = turn_begin(scene->context, TURN_ALONE);
+    struct scene own;
+    struct echoes echoes = {0};
+    enum status status = pixels_take(&scene->scene, pixels, &own);
+    if (status == STATUS_OK)
+        status = scene_simulate(&own, &echoes);
+    if (status == STATUS_OK)
+        status = echoes_put(&own, &echoes, SAS_DOUBLE, samples);
+    echoes_free(&echoes);
+    free(own.targets);
+    return turn_end(threads, status);
+}
+
+int sasbench_adjoint(struct sasbench_scene *scene, const void *samples, void *const *pixels)
+{
+    const int threads = turn_begin(scene->context, TURN_ALONE);
+    struct scene own = {.target_count = 0};
+    struct simulation *simulation = NULL;
+    double complex *sums = NULL;
+    enum status status = samples_check(&scene->scene.acquisition, PRECISION_DOUBLE, samples);
+    if (status == STATUS_OK)
+        status = pixels_take(&scene->scene, NULL, &own);
+    if (status == STATUS_OK)
+        status = simulation_open(&own, own.acquisition.pings, &simulation);
+    if (status == STATUS_OK && !(sums = malloc((size_t)own.target_count * sizeof *sums)))
+        status = status_set(STATUS_FAILED, "%s: no memory for %d pixels", own.name, own.target_count);
+    if (status == STATUS_OK)
+        status = simulation_adjoint(simulation, samples, sums);
+    const double complex *from = sums;
+    for (int k = 0; k < own.patch_count && status == STATUS_OK; k++) {
+        const size_t count = (size_t)own.patches[k].r_count * (size_t)own.patches[k].x_count;
+        memcpy(pixels[k], from, count * sizeof *from);
+        from += count;
+    }
+    simulation_close(simulation);
+    free(sums);
+    free(own.targets);
     return turn_end(threads, status);
 }
 

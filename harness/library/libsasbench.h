@@ -75,6 +75,13 @@ void sasbench_scene_free(struct sasbench_scene *scene);
 /* The scene's echoes, recorded or simulated, into [pings][receivers][samples]. Errors: SAS_INVALID where one does not
    fit the precision, or of a scene without samples and points; SAS_FAILED without memory. */
 int sasbench_echoes(struct sasbench_scene *scene, int precision, void *samples);
+/* The echoes of a reflectivity pixels[patch][row][column], double, into [pings][receivers][samples], double: those that
+   the simulator makes of a point of this amplitude at each pixel, under the scene's beam, without noise. It is linear;
+   the cost is pixels times echoes. Errors: SAS_INVALID for numbers that are not finite or too extreme; SAS_FAILED. */
+int sasbench_forward(struct sasbench_scene *scene, const void *const *pixels, void *samples);
+/* Its exact adjoint, double: each pixel sums all echoes times the conjugate of what a unit amplitude there adds.
+   Errors: the same. */
+int sasbench_adjoint(struct sasbench_scene *scene, const void *samples, void *const *pixels);
 /* The exact delays, s, of points [count][3], x, y, z, into [pings][receivers][count]. Errors: SAS_INVALID for points
    that are not finite. */
 int sasbench_delays(const struct sasbench_scene *scene, size_t count, const double *points, double *delays);

@@ -188,60 +188,90 @@ static double complex turn(double cycles)
     return __builtin_complex(cos(angle), sin(angle)); /* CMPLX, which clang 14 lacks */
 }
 
-/* Add one echo to the spectrum: replica times exp(-j 2 pi f shift) with the amplitude of each bin. */
-static void add_delayed(const struct scene *scene, const struct replica *replica, const struct angles *angles,
-                        double complex amplitude, double shift, double complex *spectrum)
+/* A point as a record has it. */
+struct echo {
+    struct angles angles;
+    double delay;          /* s, from the record's first sample */
+    double complex factor; /* of the carrier */
+};
+
+/* False where no part of the echo lies in the record. */
+static bool echo_make(const struct acquisition *a, size_t record, const struct target *target, struct echo *echo)
+{
+    const int ping = (int)(record / (size_t)a->receivers), receiver = (int)(record % (size_t)a->receivers);
+    const struct vector p = {target->x, target->r, 0};
+    const double tau = delay_exact(a->tx[ping], a->rx[record], a->velocity[ping], p, a->sound_speed);
+    echo->delay = tau - a->t0[ping];
+    if (!(echo->delay > -a->pulse_length / a->fs && echo->delay < a->samples / a->fs))
+        return false;
+    echo->angles = pair_angles(a, ping, receiver, p, tau);
+    echo->factor = turn(-a->fc * tau);
+    return true;
+}
+
+/* Add an echo of this amplitude to the spectrum: replica times exp(-j 2 pi f shift) with the amplitude of each bin. The
+   adjoint leaves the spectrum, and returns its product with the conjugate of a unit echo's. */
+static double complex pass_delayed(const struct scene *scene, const struct replica *replica, const struct echo *echo,
+                                   bool adjoint, double complex amplitude, double complex *spectrum)
 {
     const struct acquisition *a = &scene->acquisition;
-    int length = replica->length;
-    double common = angles_weight(scene, angles, a->fc), bin = a->fs / length;
-    double complex step = turn(-bin * shift), phase = 1;
+    const int length = replica->length;
+    const double common = angles_weight(scene, &echo->angles, a->fc), bin = a->fs / length;
+    const double shift = echo->delay + replica->lead / a->fs;
+    double complex step = turn(-bin * shift), phase = 1, sum = 0;
     if (common == 0 && !scene->beam.per_frequency)
-        return;
+        return 0;
     for (int k = 0; k < length; k++) {
         double f = replica->frequency[k];
         phase =
             k % 16 && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift); /* restart: 1e-15 */
-        double weight = scene->beam.per_frequency ? angles_weight(scene, angles, a->fc + f) : common;
+        double weight = scene->beam.per_frequency ? angles_weight(scene, &echo->angles, a->fc + f) : common;
         double complex value = replica->nyquist && 2 * k == length ? cos(2 * M_PI * f * shift) : phase;
-        spectrum[k] += product(weight * amplitude, product(replica->spectrum[k], value));
+        value = product(replica->spectrum[k], value);
+        if (adjoint)
+            sum += product(weight * conj(value), spectrum[k]);
+        else
+            spectrum[k] += product(weight * amplitude, value);
     }
+    return sum;
 }
 
-/* The chirp sampled at n/fs - tau: not band limited, as a naive simulation makes it. */
-static void add_sampled(const struct scene *scene, const struct angles *angles, double complex amplitude, double delay,
-                        double complex *record)
+/* The same of the chirp sampled at n/fs - tau: not band limited, as a naive simulation makes it. */
+static double complex pass_sampled(const struct scene *scene, const struct echo *echo, bool adjoint,
+                                   double complex amplitude, double complex *record)
 {
     const struct acquisition *a = &scene->acquisition;
-    double weight = angles_weight(scene, angles, a->fc);
-    int first = (int)fmax(0, ceil(delay * a->fs)),
-        end = (int)fmin(a->samples, ceil((delay + scene->pulse_duration) * a->fs));
-    for (int n = first; n < end; n++)
-        record[n] += product(weight * amplitude, chirp(a->bandwidth, scene->pulse_duration, n / a->fs - delay));
+    const double weight = angles_weight(scene, &echo->angles, a->fc), delay = echo->delay;
+    const int first = (int)fmax(0, ceil(delay * a->fs)),
+              end = (int)fmin(a->samples, ceil((delay + scene->pulse_duration) * a->fs));
+    double complex sum = 0;
+    for (int n = first; n < end; n++) {
+        const double complex value = chirp(a->bandwidth, scene->pulse_duration, n / a->fs - delay);
+        if (adjoint)
+            sum += product(weight * conj(value), record[n]);
+        else
+            record[n] += product(weight * amplitude, value);
+    }
+    return sum;
 }
 
-static void simulate_pair(const struct scene *scene, const struct replica *replica, int ping, int receiver,
-                          double complex *work, double complex *record)
+static void simulate_pair(const struct scene *scene, const struct replica *replica, size_t index, double complex *work,
+                          double complex *record)
 {
     const struct acquisition *a = &scene->acquisition;
-    size_t samples = (size_t)a->samples, index = (size_t)ping * (size_t)a->receivers + (size_t)receiver;
+    size_t samples = (size_t)a->samples;
     bool sampled = scene->pulse_kind == PULSE_LFM_TIME, any = false;
-    double window = a->samples / a->fs, duration = a->pulse_length / a->fs;
     memset(work, 0, (size_t)replica->length * sizeof *work);
     for (int k = 0; k < scene->target_count; k++) {
-        const struct target *target = &scene->targets[k];
-        struct vector p = {target->x, target->r, 0};
-        double tau = delay_exact(a->tx[ping], a->rx[index], a->velocity[ping], p, a->sound_speed);
-        double delay = tau - a->t0[ping];
-        if (!(delay > -duration && delay < window)) /* no part of the echo lies in the record */
+        struct echo echo;
+        if (!echo_make(a, index, &scene->targets[k], &echo))
             continue;
-        struct angles angles = pair_angles(a, ping, receiver, p, tau);
-        double complex amplitude = replica->scale * target->amplitude * turn(-a->fc * tau);
+        double complex amplitude = replica->scale * scene->targets[k].amplitude * echo.factor;
         any = true;
         if (sampled)
-            add_sampled(scene, &angles, amplitude, delay, record);
+            pass_sampled(scene, &echo, false, amplitude, record);
         else
-            add_delayed(scene, replica, &angles, amplitude, delay + replica->lead / a->fs, work);
+            pass_delayed(scene, replica, &echo, false, amplitude, work);
     }
     if (any && !sampled) {
         fftw_execute_dft(replica->inverse, work, work);
@@ -340,7 +370,7 @@ enum status simulation_pings(struct simulation *simulation, int first, int count
 #pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
     for (long long k = begin; k < end; k++) {
         double complex *record = samples + (size_t)(k - begin) * each;
-        simulate_pair(scene, replica, (int)(k / a->receivers), (int)(k % a->receivers),
+        simulate_pair(scene, replica, (size_t)k,
                       simulation->work + (size_t)omp_get_thread_num() * (size_t)replica->length, record);
         if (k < unfit && !is_finite(record, a->samples))
             unfit = k;
@@ -351,6 +381,50 @@ enum status simulation_pings(struct simulation *simulation, int first, int count
                                      "%s: the echo of receiver %lld in ping %lld is not finite, its numbers must "
                                      "be less extreme",
                                      scene->name, unfit % a->receivers + 1, unfit / a->receivers + 1);
+}
+
+enum status simulation_adjoint(struct simulation *simulation, const double complex *samples, double complex *amplitudes)
+{
+    const struct scene *scene = &simulation->scene;
+    const struct acquisition *a = &scene->acquisition;
+    const struct replica *replica = &simulation->replica;
+    const bool sampled = scene->pulse_kind == PULSE_LFM_TIME;
+    const long long records = (long long)a->pings * a->receivers;
+    const size_t length = (size_t)replica->length, each = (size_t)a->samples, size = length * sizeof *samples;
+    enum status status = memory_check((double)records * (double)size, "the spectra of the echoes");
+    double complex *spectra = status == STATUS_OK ? fftw_malloc((size_t)records * size) : NULL;
+    if (!spectra)
+        return status == STATUS_OK ? status_set(STATUS_FAILED, "no memory for the spectra of the echoes") : status;
+    fftw_plan forward =
+        fftw_plan_dft_1d(replica->length, spectra, spectra, FFTW_FORWARD, FFTW_ESTIMATE | FFTW_UNALIGNED);
+    progress_part(0, 1, scene->target_count);
+#pragma omp parallel for
+    for (long long n = 0; n < records; n++) { /* the adjoint of cutting a record out of an inverse transform */
+        double complex *spectrum = spectra + (size_t)n * length;
+        memset(spectrum, 0, size);
+        memcpy(spectrum + replica->lead, samples + (size_t)n * each, each * sizeof *samples);
+        if (!sampled)
+            fftw_execute_dft(forward, spectrum, spectrum);
+    }
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int k = 0; k < scene->target_count; k++) {
+        double complex sum = 0;
+        struct echo echo;
+        for (long long n = 0; n < records; n++)
+            if (echo_make(a, (size_t)n, &scene->targets[k], &echo)) {
+                double complex *spectrum = spectra + (size_t)n * length;
+                sum +=
+                    product(conj(echo.factor), sampled ? pass_sampled(scene, &echo, true, 0, spectrum + replica->lead)
+                                                       : pass_delayed(scene, replica, &echo, true, 0, spectrum));
+            }
+        amplitudes[k] = sum;
+        progress_step();
+    }
+    fftw_destroy_plan(forward);
+    fftw_free(spectra);
+    return is_finite(amplitudes, scene->target_count)
+               ? STATUS_OK
+               : status_set(STATUS_INVALID, "%s: the echoes are too extreme for sums of them", scene->name);
 }
 
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes)

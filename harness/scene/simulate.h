@@ -17,6 +17,11 @@ struct simulation;
 enum status simulation_open(const struct scene *scene, int pings, struct simulation **simulation);
 int simulation_exponent(const struct simulation *simulation);
 enum status simulation_pings(struct simulation *simulation, int first, int count, double complex *samples);
+/* The adjoint: from `samples` [pings][receivers][samples] to each target's sum over all of them, times the conjugate of
+   what a unit amplitude there adds. The same bits for any number of threads. Errors: STATUS_FAILED without memory,
+   STATUS_INVALID for numbers so extreme that a sum is not finite. */
+enum status simulation_adjoint(struct simulation *simulation, const double complex *samples,
+                               double complex *amplitudes);
 void simulation_close(struct simulation *simulation);
 
 /* The scene's echoes: a copy of recorded ones, or simulated as above. Same errors. */

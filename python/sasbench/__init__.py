@@ -12,6 +12,7 @@ sasbench.Error. docs/python.md has more.
 """
 
 from .native import Error, Unsupported
+from .operators import Operator, operator
 from .own import Algorithm, algorithm
 from .pictures import front, show
 from .scenes import (
@@ -34,7 +35,7 @@ from .tables import compare, run, score, sweep, targets
 
 __version__ = version()
 __all__ = [
-    "Acquisition", "Algorithm", "Error", "Grid", "Plan", "Scene", "Unsupported", "algorithm", "algorithms", "compare",
-    "front", "image", "load", "make", "plan", "reference", "run", "scene", "score", "show", "simulate", "sweep",
+    "Acquisition", "Algorithm", "Error", "Grid", "Operator", "Plan", "Scene", "Unsupported", "algorithm", "algorithms",
+    "compare", "front", "image", "load", "make", "operator", "plan", "reference", "run", "scene", "score", "show", "simulate", "sweep",
     "targets", "threads",
 ]  # fmt: skip

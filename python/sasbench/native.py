@@ -113,6 +113,8 @@ FUNCTIONS = {
     "scene_arrays": (POINTER(Arrays), [c_void_p]),
     "scene_free": (None, [c_void_p]),
     "echoes": (c_int, [c_void_p, c_int, c_void_p]),
+    "forward": (c_int, [c_void_p, POINTER(c_void_p), c_void_p]),
+    "adjoint": (c_int, [c_void_p, c_void_p, POINTER(c_void_p)]),
     "delays": (c_int, [c_void_p, c_size_t, c_void_p, c_void_p]),
     "plan": (c_int, [c_void_p, c_char_p, c_int, POINTER(c_void_p)]),
     "plan_precision": (c_int, [c_void_p]),

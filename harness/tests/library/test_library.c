@@ -113,6 +113,43 @@ static void images_are_the_programs(void **state)
     sasbench_scene_free(scene);
 }
 
+/* <A x, y> = <x, A' y>; more is in test_python.py. */
+static void operators_are_adjoint(void **state)
+{
+    (void)state;
+    struct sasbench_scene *scene = scene_of("study/sway");
+    const struct sas_acquisition *a = sasbench_scene_arrays(scene)->acquisition;
+    const struct sas_grid *g = sasbench_scene_arrays(scene)->patches;
+    const int pixels = g->x_count * g->r_count, samples = a->pings * a->receivers * a->samples;
+    double complex *x = room(scene, true), *back = room(scene, true), *y = room(scene, false),
+                   *forward = room(scene, false);
+    for (int k = 0; k < pixels; k++)
+        x[k] = cexp(I * k * k);
+    for (int k = 0; k < samples; k++)
+        y[k] = cexp(2 * I * k * sin(k));
+    assert_int_equal(sasbench_forward(scene, (const void *const[]){x}, forward), SAS_OK);
+    assert_int_equal(sasbench_adjoint(scene, y, (void *const[]){back}), SAS_OK);
+    double complex left = 0, right = 0;
+    double norm = 0;
+    for (int k = 0; k < samples; k++) {
+        left += forward[k] * conj(y[k]);
+        norm += creal(forward[k] * conj(forward[k]));
+    }
+    for (int k = 0; k < pixels; k++)
+        right += x[k] * conj(back[k]);
+    assert_true(norm > 1 && cabs(left - right) <= 1e-12 * sqrt(norm * samples));
+    y[3] = NAN;
+    assert_int_equal(sasbench_adjoint(scene, y, (void *const[]){back}), SAS_INVALID);
+    x[3] = NAN;
+    assert_int_equal(sasbench_forward(scene, (const void *const[]){x}, forward), SAS_INVALID);
+    assert_non_null(strstr(sasbench_message(), "pixel 3 of"));
+    free(x);
+    free(back);
+    free(y);
+    free(forward);
+    sasbench_scene_free(scene);
+}
+
 /* A scene of another's arrays and echoes images alike; an array that does not fit is named. */
 static void scenes_are_made_of_arrays(void **state)
 {
@@ -251,7 +288,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(images_are_the_programs), cmocka_unit_test(scenes_are_made_of_arrays),
         cmocka_unit_test(rows_are_measured),       cmocka_unit_test(settings_are_listed),
-        cmocka_unit_test(errors_have_one_message),
+        cmocka_unit_test(errors_have_one_message), cmocka_unit_test(operators_are_adjoint),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }

@@ -24,6 +24,8 @@ SPECS = [
     "rma_wu", "rma_delay", "monostatic | wk_squint", "reference",
 ]  # fmt: skip
 
+SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../scenes")
+
 
 def program(*arguments):
     return subprocess.run([os.environ["SASBENCH_PROGRAM"], *arguments], check=True, capture_output=True, text=True)
@@ -158,6 +160,69 @@ class Python(unittest.TestCase):
                 with self.subTest(amplitude), self.assertRaisesRegex(sasbench.Error, "beyond single precision; double"):
                     call()
             self.assertEqual(sasbench.run(made, "bp_sinc", timed=False)["status"][0], "ok")
+
+    def varied(self, keys):
+        """study/quick with other keys."""
+        path = self.path("varied.cfg")
+        with open(path, "w") as file:
+            file.write('base = {\n@include "%s"\n};\n%s\n' % (os.path.join(SCENES, "study/quick.cfg"), keys))
+        return sasbench.scene(path)
+
+    def test_operators_are_the_simulator(self):
+        """One pixel is the target; the adjoint to a part in 1e12 of the dot product's bound."""
+        random = np.random.default_rng(1)
+        crooked = """track = { speed = 2.5; pri = 0.064; pings = 18; x_first = -1.52;
+            errors = ( { axis = "sway"; amplitude = 0.02; period = 0.8; phase = 30.0; },
+                       { axis = "yaw"; amplitude = 2.0; period = 0.5; phase = 0.0; } ); };"""
+        for keys in (
+            "",
+            crooked + 'beam = { kind = "txrx"; truncation = "none"; per_frequency = true; };',
+            crooked + 'pulse = { kind = "lfm_time"; duration = 2e-3; }; noise = { std = 0.1; };',
+            'pulse = { kind = "flat"; };',
+        ):
+            with self.subTest(keys):
+                scene = self.varied(keys + """image = { x = { first = -0.1; step = 0.05; count = 5; };
+                                                          r = { first = 19.9; step = 0.05; count = 4; }; };""")
+                self.assertGreater(np.abs(scene.acquisition.velocity).min(axis=0)[0], 1)
+                A = sasbench.operator(scene)
+                x, y = (random.standard_normal((n, 2)) @ (1, 1j) for n in A.shape[::-1])
+                forward, back = A @ x, A.H @ y
+                bound = np.linalg.norm(forward) * np.linalg.norm(y)
+                self.assertLess(abs(np.vdot(y, forward) - np.vdot(back, x)), 1e-12 * bound)
+                self.assertGreater(np.linalg.norm(back), 0)
+                if "noise" not in keys:
+                    image = np.zeros(scene.grid.shape, complex)
+                    image[2, 2] = 1
+                    echoes = sasbench.simulate(scene)
+                    self.assertLess(np.abs(A @ image - echoes).max(), 1e-12 * np.abs(echoes).max())
+                self.assert_same(A.H @ y.reshape(scene.acquisition.shape), back.reshape(scene.grid.shape))
+        grids = [sasbench.Grid(-0.1, 0.05, 4, 19.9, 0.1, 3, 0.3), sasbench.Grid(0.2, 0.1, 1, 20, 0.1, 2)]
+        images = [random.standard_normal((*g.shape, 2)) @ (1, 1j) for g in grids]
+        points = np.array([(*p[:2], v.real, v.imag) for g, i in zip(grids, images)
+                           for p, v in zip(g.points().reshape(-1, 3), i.ravel())])  # fmt: skip
+        a = self.scene.acquisition
+        A = sasbench.operator(sasbench.make(a, grids))
+        echoes = sasbench.simulate(sasbench.make(a, grids, points=points))
+        # numpy turns the grid to other last digits: 4e-15 m of 20, a part in 1e12 of a wavelength.
+        self.assertLess(np.abs(A @ images - echoes).max(), 1e-11 * np.abs(echoes).max())
+        self.assertEqual([i.shape for i in A.H @ echoes.astype(np.complex64)], [(3, 4), (2, 1)])
+        recorded = sasbench.operator(sasbench.make(a, grids, echoes))
+        self.assert_same(recorded @ images, A @ images)
+        vector = np.concatenate([i.ravel() for i in images])
+        if importlib.util.find_spec("scipy"):
+            from scipy.sparse.linalg import lsqr
+
+            self.assertLess(np.abs(lsqr(A, echoes.ravel(), atol=1e-9, btol=1e-9)[0] - vector).max(), 1e-3)
+        for words, call in {
+            "has 13 numbers, must have 14": lambda: A @ vector[1:],
+            "has 1 patches, must have 2": lambda: A @ images[0],
+            "pixel 13 of the reflectivity is not finite": lambda: A @ np.append(vector[:-1], np.nan),
+            "sample 0 of receiver 0 in ping 0 has inf": lambda: A.H @ np.full(echoes.shape, np.inf + 0j),
+            "too extreme": lambda: A.H @ np.full(echoes.shape, 1e308 + 0j),
+        }.items():
+            with self.subTest(words), np.errstate(all="ignore"), self.assertRaisesRegex(sasbench.Error, words):
+                call()
+        self.assertLess(np.abs(A @ (1e-300 * vector) / 1e-300 - (A @ vector).ravel()).max(), 1e-12)
 
     def test_delays(self):
         a, point = self.scene.acquisition, np.array([0.3, 20.0, -1.0])
