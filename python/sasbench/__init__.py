@@ -36,6 +36,6 @@ from .tables import compare, run, score, sweep, targets
 __version__ = version()
 __all__ = [
     "Acquisition", "Algorithm", "Error", "Grid", "Operator", "Plan", "Scene", "Unsupported", "algorithm", "algorithms",
-    "compare", "front", "image", "load", "make", "operator", "plan", "reference", "run", "scene", "score", "show", "simulate", "sweep",
-    "targets", "threads",
+    "compare", "front", "image", "load", "make", "operator", "plan", "reference", "run", "scene", "score", "show",
+    "simulate", "sweep", "targets", "threads",
 ]  # fmt: skip
