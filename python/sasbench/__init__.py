@@ -11,6 +11,7 @@ Units are m, s, Hz and rad. Images of a scene with several patches are lists, an
 sasbench.Error. docs/python.md has more.
 """
 
+from .files import save
 from .native import Error, Unsupported
 from .operators import Operator, operator
 from .own import Algorithm, algorithm
@@ -36,6 +37,6 @@ from .tables import compare, run, score, sweep, targets
 __version__ = version()
 __all__ = [
     "Acquisition", "Algorithm", "Error", "Grid", "Operator", "Plan", "Scene", "Unsupported", "algorithm", "algorithms",
-    "compare", "front", "image", "load", "make", "operator", "plan", "reference", "run", "scene", "score", "show",
-    "simulate", "sweep", "targets", "threads",
+    "compare", "front", "image", "load", "make", "operator", "plan", "reference", "run", "save", "scene", "score",
+    "show", "simulate", "sweep", "targets", "threads",
 ]  # fmt: skip

@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import csv
+import dataclasses
 import importlib.util
 import os
 import resource
@@ -85,10 +86,13 @@ class Python(unittest.TestCase):
         limits = [resource.getrlimit(which) for which in (resource.RLIMIT_AS, resource.RLIMIT_CPU)]
         program("simulate", "study/quick", "-o", path)
         samples = matlab.variables(path)["samples"]
+        kinds = [getattr(resource, name) for name in dir(resource) if name.startswith("RLIMIT_")]
+        limits = [resource.getrlimit(kind) for kind in kinds]
         self.assert_same(self.echoes, np.transpose(samples, (2, 1, 0)))
         read = sasbench.load(path)
         self.assertEqual([resource.getrlimit(which) for which in (resource.RLIMIT_AS, resource.RLIMIT_CPU)], limits)
         self.assert_same(sasbench.simulate(read), self.echoes)
+        self.assertEqual(limits, [resource.getrlimit(kind) for kind in kinds])  # reading leaves the process as it was
         image = self.of_program("file", "bp_sinc:precision=double", "--echoes", path)
         self.assert_same(sasbench.image(read, "bp_sinc:precision=double"), image)
         part = sasbench.Grid(-0.1, 0.05, 5, 19.9, 0.05, 4)
@@ -115,6 +119,49 @@ class Python(unittest.TestCase):
             for p in (points, points[0], points[1])
         )
         self.assertLess(np.abs(both - first - second).max(), 1e-12 * np.abs(both).max())
+
+    @unittest.skipIf(importlib.util.find_spec("scipy") is None, "python3-scipy is not installed")
+    def test_saved_files(self):
+        """They hold the arrays, to the bit, in both precisions; what fails leaves nothing."""
+        a, grid, points = self.scene.acquisition, self.scene.grid, np.array([[0, 20, 1, 0.5], [0.1, 20.1, 0, -2.0]])
+        grids = [grid, sasbench.Grid(0.1, 0.01, 3, 20, 0.02, 2, 0.25)]
+        path = self.path("a 'b.mat")
+        for echoes in (self.echoes, self.echoes.astype(np.complex64)):
+            sasbench.save(path, a, echoes, grids, points)
+            read, made = sasbench.load(path), sasbench.make(a, grids, echoes, points)
+            self.assertEqual(matlab.variables(path)["samples"].dtype, echoes.dtype)
+            self.assert_same(sasbench.simulate(read, echoes.dtype), echoes)
+            self.assertEqual(read.grids, made.grids)
+            self.assertEqual(read.points.tobytes(), points.tobytes())
+            for field in ("t0", "tx", "rx", "velocity", "pulse"):
+                self.assertEqual(getattr(read.acquisition, field).tobytes(), getattr(made.acquisition, field).tobytes())
+            for field in ("samples", "sound_speed", "fc", "fs", "bandwidth", "tx_length", "rx_length"):
+                self.assertEqual(getattr(read.acquisition, field), getattr(made.acquisition, field))
+            for spec in ("bp_sinc", "rma_lbf"):  # range migration takes the beam from the element lengths
+                same = [sasbench.run(s, spec, timed=False)["error"] for s in (read, made)]
+                self.assertEqual(same[0].tobytes(), same[1].tobytes())
+        compressed = dataclasses.replace(a, pulse=None, aperture_limit=0.5)
+        sasbench.save(path, compressed, self.echoes)
+        self.assertIsNone(sasbench.load(path, grid).acquisition.pulse)
+        self.assertEqual(sasbench.load(path, grid).acquisition.aperture_limit, 0.5)
+        before = os.listdir(self.folder.name)
+        with open(path, "rb") as file:
+            whole = file.read()
+        nan = np.full_like(self.echoes, np.nan)
+        for words, call in {
+            "sample 0 of receiver 0 in ping 0 has nan": lambda: sasbench.save(path, a, nan, grid),
+            "must be (18, 8, 256)": lambda: sasbench.save(path, a, self.echoes[1:], grid),
+            "must end in .mat": lambda: sasbench.save(self.path("a.npy"), a, self.echoes),
+            "no/a.mat: cannot be written: No such": lambda: sasbench.save(self.path("no/a.mat"), a, self.echoes),
+            "no pixel meets any record": lambda: sasbench.save(path, a, self.echoes, sasbench.Grid(0, 1, 2, 99, 1, 2)),
+            "has a zero in it": lambda: sasbench.save("a\0.mat", a, self.echoes),
+        }.items():
+            with self.subTest(words), self.assertRaises(sasbench.Error) as caught:
+                call()
+            self.assertIn(words, str(caught.exception))
+        with open(path, "rb") as file:
+            self.assertEqual(file.read(), whole)
+        self.assertEqual(os.listdir(self.folder.name), before)
 
     @unittest.skipIf(importlib.util.find_spec("matplotlib") is None, "python3-matplotlib is not installed")
     def test_pictures(self):
