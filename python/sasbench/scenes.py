@@ -151,6 +151,10 @@ def _array(pointer, shape: Sequence[int]) -> np.ndarray:
     return np.ctypeslib.as_array(pointer, (count,)).reshape(shape).copy() if count else np.zeros(shape)
 
 
+class _Owner:
+    """What the memory of a scene ends with: plans keep it, as Python may end a plan and its scene in either order."""
+
+
 class Scene:
     """A recording, the image that is made of it, and its point targets. Made by scene, load and make.
 
@@ -160,7 +164,8 @@ class Scene:
 
     def __init__(self, handle: c_void_p, context: c_void_p):
         self._handle, self._context = handle, context
-        self._free = weakref.finalize(self, native.call, "scene_free", handle)
+        self._owner = _Owner()
+        weakref.finalize(self._owner, native.call, "scene_free", handle)
         arrays = native.call("scene_arrays", handle).contents
         a = arrays.acquisition.contents
         pulse = _array(a.pulse, (2 * a.pulse_length,)).view(np.complex128) if a.pulse_length else None
@@ -276,6 +281,10 @@ def as_list(scene: Scene, image: Image) -> list[np.ndarray]:
     return [i.astype(dtype, copy=False) for i in images]
 
 
+def _plan_free(handle: c_void_p, owner: _Owner) -> None:
+    native.call("plan_free", handle)
+
+
 class Plan:
     """All of an image's work that depends on geometry and settings only; execute forms the image of echoes.
 
@@ -286,7 +295,7 @@ class Plan:
         self.scene, self.spec = scene, spec
         precision = precision_of(dtype, "plan")
         self._handle = native.make("plan", scene._handle, native.encoded(spec, "SPEC"), precision)
-        self._free = weakref.finalize(self, native.call, "plan_free", self._handle)
+        weakref.finalize(self, _plan_free, self._handle, scene._owner)
         self.dtype = _DTYPES[native.call("plan_precision", self._handle)]
 
     def execute(self, echoes: np.ndarray, out: Optional[Image] = None) -> Image:

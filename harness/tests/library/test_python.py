@@ -3,6 +3,7 @@
 import concurrent.futures
 import csv
 import dataclasses
+import gc
 import importlib.util
 import os
 import resource
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 try:
     import numpy as np
@@ -19,6 +21,7 @@ except ImportError:
 
 import matlab
 import sasbench
+from sasbench import native
 
 SPECS = [
     "bp_nearest", "bp_linear", "bp_sinc:taps=8", "bp_zeropad", "bp_farrow", "bp_fitted", "bp_factorised", "rma_lbf",
@@ -289,6 +292,18 @@ class Python(unittest.TestCase):
                 self.assert_same(image, out)
         with self.assertRaisesRegex(sasbench.Error, "^out: must be C-contiguous, writeable, and complex128$"):
             plan.execute(self.echoes, out[:, ::-1])
+
+    def test_plans_end_before_their_scenes(self):
+        """Also where Python finds both at once, in a circle."""
+        ended, call = [], native.call
+        with unittest.mock.patch.object(native, "call", lambda name, *a: (ended.append(name), call(name, *a))[1]):
+            for circle in range(2):
+                scene = sasbench.scene("study/quick")
+                plan = sasbench.plan(scene, "bp_sinc")
+                plan.circle, scene.circle = (plan, None) if circle == 0 else (None, plan)
+                del scene, plan
+                gc.collect()
+        self.assertEqual([name for name in ended if name.endswith("_free")], 2 * ["plan_free", "scene_free"])
 
     def test_own_algorithms_are_measured(self):
         @sasbench.algorithm
