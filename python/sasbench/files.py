@@ -13,9 +13,9 @@ from . import native, scenes
 
 
 def _some_pixel(a: scenes.Acquisition) -> scenes.Grid:
-    """A pixel that the first ping sees in the middle of its record."""
-    x, y, z = np.asarray(a.tx, dtype=np.float64)[0]
-    away = a.sound_speed * (np.asarray(a.t0)[0] + a.samples / 2 / a.fs) / 2
+    """A pixel that the first ping sees in the middle of its record; any, of shapes that make refuses."""
+    x, y, z = np.resize(np.asarray(a.tx, dtype=np.float64), 3)
+    away = a.sound_speed * (np.resize(a.t0, 1)[0] + a.samples / 2 / a.fs) / 2
     return scenes.Grid(x, 1, 1, y + math.sqrt(max(away**2 - z**2, 0)), 1, 1)
 
 
@@ -62,6 +62,7 @@ def save(
     if not path.endswith(".mat"):
         raise native.Error(f"{path}: the name of an echo file must end in .mat")
     grids = [grids] if isinstance(grids, scenes.Grid) else list(grids)
+    scenes.precision_of(np.asarray(echoes).dtype, "echoes")
     checked = grids or [_some_pixel(acquisition)]
     points = scenes.make(acquisition, checked, echoes, points).points
     try:

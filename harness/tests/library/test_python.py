@@ -154,6 +154,9 @@ class Python(unittest.TestCase):
         for words, call in {
             "sample 0 of receiver 0 in ping 0 has nan": lambda: sasbench.save(path, a, nan, grid),
             "must be (18, 8, 256)": lambda: sasbench.save(path, a, self.echoes[1:], grid),
+            "echoes: object is no dtype": lambda: sasbench.save(path, a, None, grid),
+            "tx: the shape is": lambda: sasbench.save(path, dataclasses.replace(a, tx=a.tx[:, :2]), self.echoes),
+            "t0: the shape is": lambda: sasbench.save(path, dataclasses.replace(a, t0=0.02), self.echoes),
             "must end in .mat": lambda: sasbench.save(self.path("a.npy"), a, self.echoes),
             "no/a.mat: cannot be written: No such": lambda: sasbench.save(self.path("no/a.mat"), a, self.echoes),
             "no pixel meets any record": lambda: sasbench.save(path, a, self.echoes, sasbench.Grid(0, 1, 2, 99, 1, 2)),
