@@ -31,7 +31,7 @@ def _variables(a: scenes.Acquisition, echoes: np.ndarray, grids: Sequence[scenes
     for name, value in (("tx_length", a.tx_length), ("rx_length", a.rx_length)):
         if value != 0:
             found[name] = float(value)
-    if a.aperture_limit != np.inf:
+    if a.aperture_limit <= 1:  # beyond, it leaves out nothing
         found["beam_limit"] = float(a.aperture_limit)
     if grids:
         found["image_grid"] = np.array(

@@ -147,6 +147,8 @@ class Python(unittest.TestCase):
         sasbench.save(path, compressed, self.echoes)
         self.assertIsNone(sasbench.load(path, grid).acquisition.pulse)
         self.assertEqual(sasbench.load(path, grid).acquisition.aperture_limit, 0.5)
+        sasbench.save(path, dataclasses.replace(a, aperture_limit=2), self.echoes, grid)
+        self.assertEqual(sasbench.load(path).acquisition.aperture_limit, np.inf)
         before = os.listdir(self.folder.name)
         with open(path, "rb") as file:
             whole = file.read()
@@ -157,6 +159,7 @@ class Python(unittest.TestCase):
             "echoes: object is no dtype": lambda: sasbench.save(path, a, None, grid),
             "tx: the shape is": lambda: sasbench.save(path, dataclasses.replace(a, tx=a.tx[:, :2]), self.echoes),
             "t0: the shape is": lambda: sasbench.save(path, dataclasses.replace(a, t0=0.02), self.echoes),
+            "aperture limit is -1": lambda: sasbench.save(path, dataclasses.replace(a, aperture_limit=-1), self.echoes),
             "must end in .mat": lambda: sasbench.save(self.path("a.npy"), a, self.echoes),
             "no/a.mat: cannot be written: No such": lambda: sasbench.save(self.path("no/a.mat"), a, self.echoes),
             "no pixel meets any record": lambda: sasbench.save(path, a, self.echoes, sasbench.Grid(0, 1, 2, 99, 1, 2)),
