@@ -17,8 +17,8 @@
 
        z(nu, t) = sum over q of U_q(nu, t) (transform over n of V_qn y_n(t))
 
-   undoes them. However the motion varies from record to record, no phase is smoothed: a product over records and one over
-   wavenumbers are adjoint to what the motion did, as back projection is. */
+   undoes them. The motion may vary from record to record: a product over records and one over wavenumbers are the
+   adjoint of what it did, as back projection is. */
 #ifndef SASBENCH_WAVENUMBER_MONOSTATIC_PLAN_H
 #define SASBENCH_WAVENUMBER_MONOSTATIC_PLAN_H
 

@@ -55,7 +55,7 @@ struct sight {
 };
 
 /* Energy, over the image's, of what the raster's spacing d cannot tell apart: an aperture's hard end has the spectrum
-   1/(2 pi (nu - nu_end)) over that of its length, and goes on beyond the raster's wavenumbers; and an echo from an angle
+   1/(2 pi (nu - nu_end)) over that of its length, goes on beyond the raster's wavenumbers; and an echo from an angle
    makes a ghost where a pixel is seen at nu + 1/d, which may lie in the image. */
 static double energy_aliased(const struct monostatic *m, const struct sight *sight)
 {

@@ -17,7 +17,7 @@
     "array = { tx_length = 0.0255; rx_length = 0.0255; receivers = 8; first_offset = 0.0; pitch = 0.0255; };\n"        \
     "record = { first_sample = 1080; samples = 220; };\n"                                                              \
     "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 0.443; };\n"                                               \
-    "image = { x = { first = -1.0; step = 0.02; count = 100; }; r = { first = 28.5; step = 0.05; count = 60; }; };\n"  \
+    "image = { x = { first = -1.0; step = 0.04; count = 50; }; r = { first = 28.5; step = 0.05; count = 60; }; };\n"   \
     "targets = { fields = ( { x = [-1.0, 1.0]; r = [28.5, 31.5]; count = 60; seed = 2; } ); };\n"                      \
     "track = { speed = 1.02; pri = 0.1; pings = 120; x_first = -6.1; errors_known = true; errors = ( " errors          \
     " ); };\n"
