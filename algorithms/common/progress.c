@@ -6,6 +6,7 @@ static struct {
     _Atomic double from, to;
     atomic_int steps, done;
 } part;
+static atomic_bool stopped;
 
 void progress_part(double from, double to, int steps)
 {
@@ -16,9 +17,20 @@ void progress_part(double from, double to, int steps)
     part.steps = steps;
 }
 
-void progress_step(void)
+bool progress_step(void)
 {
     atomic_fetch_add_explicit(&part.done, 1, memory_order_relaxed);
+    return !progress_stopped();
+}
+
+void progress_stop(bool stop)
+{
+    stopped = stop;
+}
+
+bool progress_stopped(void)
+{
+    return atomic_load_explicit(&stopped, memory_order_relaxed);
 }
 
 double progress_share(void)

@@ -287,10 +287,9 @@ static void migrate(const struct rma *rma, const struct rma_swath *swath, struct
 #pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_STAGES])
     {
 #pragma omp for schedule(dynamic)
-        for (int turn = 0; turn < swath->wavenumbers; turn += rma_turns(rma)) {
-            column(rma, swath, omp_get_thread_num(), turn, seconds);
-            progress_step();
-        }
+        for (int turn = 0; turn < swath->wavenumbers; turn += rma_turns(rma))
+            if (progress_step())
+                column(rma, swath, omp_get_thread_num(), turn, seconds);
     }
     stages_share(stages, RMA_STAGES, stage_names, seconds);
 }

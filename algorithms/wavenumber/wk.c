@@ -132,10 +132,9 @@ static void focus_lines(const struct wk *wk, struct stages *stages)
     double seconds[WK_STAGES] = {0};
     progress_part(0, 1, wk->lines / WK_TILE);
 #pragma omp parallel for schedule(static) num_threads(wk->threads) reduction(+ : seconds[:WK_STAGES])
-    for (int first = 0; first < wk->lines; first += WK_TILE) {
-        wk->line_loop(wk, omp_get_thread_num(), first, seconds);
-        progress_step();
-    }
+    for (int first = 0; first < wk->lines; first += WK_TILE)
+        if (progress_step())
+            wk->line_loop(wk, omp_get_thread_num(), first, seconds);
     stages_share(stages, WK_STAGES, stage_names, seconds);
 }
 

@@ -7,11 +7,14 @@
 #include <math.h>
 #include <omp.h>
 #include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "common/progress.h"
 #include "echoes/matfile.h"
 #include "files/paths.h"
 #include "library/library.h"
@@ -38,11 +41,57 @@ const char *sasbench_message(void)
     return message;
 }
 
+/* ---- SIGINT ---- */
+
+static _Thread_local bool interruptible;
+static _Thread_local int begun; /* interruptions until the call */
+static atomic_int interruptions;
+static struct sigaction before_call; /* of the one thread that is interruptible */
+
+static void interrupt(int number)
+{
+    atomic_fetch_add(&interruptions, 1);
+    progress_stop(true);
+    before_call.sa_handler(number);
+}
+
+/* Only another function is joined: a process that ignores the signal, or is ended by it, goes on so. */
+static bool handler_joins(void)
+{
+    return !(before_call.sa_flags & SA_SIGINFO) && before_call.sa_handler != SIG_DFL
+           && before_call.sa_handler != SIG_IGN;
+}
+
+static void interrupt_await(void)
+{
+    sigaction(SIGINT, NULL, &before_call);
+    struct sigaction joined = before_call;
+    joined.sa_handler = interrupt;
+    progress_stop(false);
+    if (handler_joins())
+        sigaction(SIGINT, &joined, NULL);
+}
+
+static void interrupt_forget(void)
+{
+    if (handler_joins())
+        sigaction(SIGINT, &before_call, NULL);
+    progress_stop(false);
+}
+
+void sasbench_interruptible(void)
+{
+    interruptible = true;
+}
+
 int turn_begin(const struct sasbench *context, enum turn turn)
 {
     const int threads = omp_get_max_threads();
     if (depth++ == 0) {
         held = turn != TURN_NONE;
+        begun = interruptions;
+        if (interruptible && held)
+            interrupt_await();
         if (turn == TURN_ALONE)
             pthread_rwlock_wrlock(&turns);
         else if (held)
@@ -55,14 +104,19 @@ int turn_begin(const struct sasbench *context, enum turn turn)
 
 int turn_end(int threads, enum status status)
 {
+    if (depth == 1 && held && interruptions != begun) /* the result is void, in whatever thread */
+        status = status_set(STATUS_FAILED, "interrupted");
     if (status != STATUS_OK)
         snprintf(message, sizeof message, "%s", status_message());
     for (char *at = message; *at; at++) /* a line, whatever names it quotes */
         if (iscntrl((unsigned char)*at))
             *at = '?';
     omp_set_num_threads(threads);
-    if (--depth == 0 && held)
+    if (--depth == 0 && held) {
         pthread_rwlock_unlock(&turns);
+        if (interruptible)
+            interrupt_forget();
+    }
     return (int)status;
 }
 

@@ -34,6 +34,10 @@ struct sasbench_table;
 const char *sasbench_version(void);
 /* The calling thread's last error, one line; valid until its next one. */
 const char *sasbench_message(void);
+/* From now on SIGINT ends the calls of all threads that form images or simulate echoes, while the calling thread is in
+   one: they fail with "interrupted". The process's own handler is called as well, unless it ignores the signal or is
+   ended by it. For one thread of a process, as Python's main thread. */
+void sasbench_interruptible(void);
 
 /* `threads` of OpenMP for each call, 1 to 1024; 0: as many as OpenMP takes by itself. `scenes`: the folder of shipped
    scenes; NULL: the one that was installed with the library, or the source's. Errors: SAS_INVALID, SAS_FAILED. */

@@ -370,11 +370,12 @@ enum status simulation_pings(struct simulation *simulation, int first, int count
 #pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
     for (long long k = begin; k < end; k++) {
         double complex *record = samples + (size_t)(k - begin) * each;
+        if (!progress_step())
+            continue;
         simulate_pair(scene, replica, (size_t)k,
                       simulation->work + (size_t)omp_get_thread_num() * (size_t)replica->length, record);
         if (k < unfit && !is_finite(record, a->samples))
             unfit = k;
-        progress_step();
     }
     return unfit == end ? STATUS_OK
                         : status_set(STATUS_INVALID,
@@ -410,7 +411,8 @@ enum status simulation_adjoint(struct simulation *simulation, const double compl
     for (int k = 0; k < scene->target_count; k++) {
         double complex sum = 0;
         struct echo echo;
-        for (long long n = 0; n < records; n++)
+        const bool wanted = progress_step();
+        for (long long n = 0; n < records && wanted; n++)
             if (echo_make(a, (size_t)n, &scene->targets[k], &echo)) {
                 double complex *spectrum = spectra + (size_t)n * length;
                 sum +=
@@ -418,7 +420,6 @@ enum status simulation_adjoint(struct simulation *simulation, const double compl
                                                        : pass_delayed(scene, replica, &echo, true, 0, spectrum));
             }
         amplitudes[k] = sum;
-        progress_step();
     }
     fftw_destroy_plan(forward);
     fftw_free(spectra);

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
+import threading
 from ctypes import CFUNCTYPE, POINTER, byref, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 
 OK, FAILED, INVALID, UNSUPPORTED = range(4)
@@ -104,6 +105,7 @@ ABI = 1  # the first header that has all of Algorithm
 FUNCTIONS = {
     "version": (c_char_p, []),
     "message": (c_char_p, []),
+    "interruptible": (None, []),
     "open": (c_int, [c_int, c_char_p, POINTER(c_void_p)]),
     "algorithm": (c_char_p, [c_int, POINTER(c_char_p), POINTER(c_char_p)]),
     "setting": (c_int, [c_int, c_int, POINTER(Setting)]),
@@ -148,6 +150,8 @@ def _load() -> ctypes.CDLL:
     for name, (result, arguments) in FUNCTIONS.items():
         function = getattr(library, "sasbench_" + name)
         function.restype, function.argtypes = result, arguments
+    if threading.current_thread() is threading.main_thread():  # which has Python's signals
+        library.sasbench_interruptible()
     return library
 
 

@@ -238,6 +238,8 @@ static void subaperture_form(const struct forming *forming, int subaperture)
     const struct factorised *plan = forming->plan;
     const struct tree *tree = &plan->tree;
     const struct subaperture *part = &tree->subapertures[subaperture];
+    if (!progress_step())
+        return;
     for (int n = part->child; n < part->child + part->children; n++)
         subaperture_form(forming, n);
     if (!plan->used[subaperture])
@@ -260,7 +262,6 @@ static void subaperture_form(const struct forming *forming, int subaperture)
                 line_of_pixels(plan, subaperture, k, n);
         }
     stages_end(forming->stages, "pixels");
-    progress_step();
 }
 
 enum status factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,

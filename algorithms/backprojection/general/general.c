@@ -320,10 +320,10 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
             const double done = (double)begin / (double)pairs + share * k;
             progress_part(done, done + share, numbers * parts);
 #pragma omp parallel for schedule(dynamic)
-            for (int n = 0; n < numbers * parts; n++) {
-                sum_part(&lines, k, (struct line_part){shown.begin + n % numbers, n / numbers, parts}, first, count);
-                progress_step();
-            }
+            for (int n = 0; n < numbers * parts; n++)
+                if (progress_step())
+                    sum_part(&lines, k, (struct line_part){shown.begin + n % numbers, n / numbers, parts}, first,
+                             count);
         }
         stages_end(stages, "focus");
     }

@@ -139,8 +139,8 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
                                    .re = re,
                                    .im = re + half * size,
                                    .stride = in->strides[k]};
-        in->row(&row);
-        progress_step();
+        if (progress_step())
+            in->row(&row);
     }
 }
 

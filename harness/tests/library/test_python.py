@@ -86,14 +86,12 @@ class Python(unittest.TestCase):
 
     def test_files_are_the_programs(self):
         path = self.path("echoes.mat")
-        limits = [resource.getrlimit(which) for which in (resource.RLIMIT_AS, resource.RLIMIT_CPU)]
         program("simulate", "study/quick", "-o", path)
         samples = matlab.variables(path)["samples"]
         kinds = [getattr(resource, name) for name in dir(resource) if name.startswith("RLIMIT_")]
         limits = [resource.getrlimit(kind) for kind in kinds]
         self.assert_same(self.echoes, np.transpose(samples, (2, 1, 0)))
         read = sasbench.load(path)
-        self.assertEqual([resource.getrlimit(which) for which in (resource.RLIMIT_AS, resource.RLIMIT_CPU)], limits)
         self.assert_same(sasbench.simulate(read), self.echoes)
         self.assertEqual(limits, [resource.getrlimit(kind) for kind in kinds])  # reading leaves the process as it was
         image = self.of_program("file", "bp_sinc:precision=double", "--echoes", path)
@@ -443,6 +441,35 @@ class Python(unittest.TestCase):
                 sasbench.load(self.path("seed.mat"), grid)
             handles.add(len(os.listdir("/proc/self/fd")))
         self.assertEqual(len(handles), 1)
+
+    def test_interrupt_ends_images(self):
+        """Of the main thread and of another one; the next image is whole again."""
+        code = """if True:
+            import os, signal, threading, sasbench
+            quick = sasbench.scene("study/quick")
+            echoes = sasbench.simulate(quick)
+            before = sasbench.image(quick, "bp_sinc", echoes)
+            large = sasbench.make(quick.acquisition, sasbench.Grid(-2, 0.002, 2000, 18, 0.003, 2000))
+            def form():
+                try:
+                    sasbench.image(large, "reference", echoes)
+                    print("formed")
+                except sasbench.Error as error:
+                    print(error)
+            other = threading.Thread(target=form)
+            timer = threading.Timer(1.5, os.kill, (os.getpid(), signal.SIGINT))
+            other.start()
+            timer.start()
+            try:
+                sasbench.image(large, "reference", echoes)
+                print("formed")
+            except KeyboardInterrupt:
+                other.join()
+                print("KeyboardInterrupt")
+            print((sasbench.image(quick, "bp_sinc", echoes) == before).all())
+            """
+        child = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+        self.assertEqual((child.stdout, child.returncode), ("interrupted\nKeyboardInterrupt\nTrue\n", 0), child.stderr)
 
     def test_algorithms_are_listed(self):
         known = sasbench.algorithms()
