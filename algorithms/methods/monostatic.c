@@ -106,6 +106,12 @@ static enum status monostatic_plan(const struct problem *problem, const void *me
     if (a->pings < 2 || !isfinite(acquisition_unevenness(a, &track)))
         return status_set(STATUS_UNSUPPORTED, "monostatic: condition track: two pings and more at different places are "
                                               "needed (cure: back projection)");
+    const bool straight = acquisition_is_straight(a, NULL);
+    const int rows = straight ? a->receivers : a->pings * a->receivers;
+    const size_t each = sizeof(int) + sizeof(short) + (problem->precision == PRECISION_DOUBLE ? 16 : 8);
+    const enum status room = memory_check((double)rows * a->samples * (double)each, "monostatic's delays");
+    if (room != STATUS_OK)
+        return room;
     struct monostatic *m = calloc(1, sizeof *m);
     if (!m)
         return status_set(STATUS_FAILED, "monostatic: no memory for a plan");
@@ -113,10 +119,10 @@ static enum status monostatic_plan(const struct problem *problem, const void *me
                              .precision = problem->precision,
                              .speed = track.speed,
                              .squint = a->echo_squint,
-                             .straight = acquisition_is_straight(a, NULL),
+                             .straight = straight,
+                             .rows = rows,
                              .threads = omp_get_max_threads(),
                              .taps = taps[((const struct options *)options)->taps]};
-    m->rows = m->straight ? a->receivers : a->pings * a->receivers;
     m->length = a->samples + 2 * m->taps;
     centres_place(m, &track);
     enum status status = STATUS_OK;

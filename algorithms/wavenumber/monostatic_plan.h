@@ -25,6 +25,7 @@
 #include "common/memory.h"
 #include "contract/algorithm.h"
 #include "contract/delay.h"
+#include "range_migration/spectrum.h"
 
 struct traces;
 
@@ -76,6 +77,13 @@ struct monostatic {
 static inline int monostatic_row(const struct monostatic *m, int ping, int receiver)
 {
     return m->straight ? receiver : ping * m->acquisition->receivers + receiver;
+}
+
+/* Of the raster. */
+static inline struct spectrum_setting monostatic_setting(const struct monostatic *m)
+{
+    return (struct spectrum_setting){
+        .sound_speed = m->acquisition->sound_speed, .speed = m->speed, .fc = m->acquisition->fc};
 }
 
 /* m: along `angle` off broadside, of an echo that comes back to a ping of the raster after t. */

@@ -9,7 +9,6 @@
 #include "common/fft.h"
 #include "common/fft_length.h"
 #include "range_migration/delay_compensation.h"
-#include "range_migration/spectrum.h"
 
 static void weights_fill(struct monostatic *m)
 {
@@ -44,7 +43,7 @@ static void delays_fill(struct monostatic *m, int row_number, double t0)
 static void terms_fill(struct monostatic *m)
 {
     const struct acquisition *a = m->acquisition;
-    const struct spectrum_setting setting = {.sound_speed = a->sound_speed, .speed = m->speed, .fc = a->fc};
+    const struct spectrum_setting setting = monostatic_setting(m);
     const size_t pings = (size_t)a->pings * (size_t)a->receivers, terms = (size_t)m->terms;
     m->wavenumbers = fft_length_quick((long long)pings + (long long)pings / 8 + 32); /* products spread a little */
     m->store.failed = m->store.failed || m->wavenumbers == 0;

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "common/cubic.h"
-#include "range_migration/spectrum.h"
 #include "wavenumber/monostatic_plan.h"
 
 enum {
@@ -16,12 +15,6 @@ enum {
 static const double WIDEST = 1.4;      /* rad */
 static const double EDGE_ZONES = 3;    /* of Fresnel's */
 static const double NEGLIGIBLE = 1e-3; /* of the image: of which the taps leave as much */
-
-static struct spectrum_setting setting(const struct monostatic *m)
-{
-    return (struct spectrum_setting){
-        .sound_speed = m->acquisition->sound_speed, .speed = m->speed, .fc = m->acquisition->fc};
-}
 
 /* Seconds by which a record is wrong in an echo from a range, `angle` off broadside. */
 static double delay_left(const struct monostatic *m, int row, double range, double angle)
@@ -60,7 +53,7 @@ struct sight {
 static double energy_aliased(const struct monostatic *m, const struct sight *sight)
 {
     const struct acquisition *a = m->acquisition;
-    const struct spectrum_setting s = setting(m);
+    const struct spectrum_setting s = monostatic_setting(m);
     const double across = 1 / fabs(m->spacing), length = sight->nearest * (tan(sight->ends[1]) - tan(sight->ends[0]));
     double energy = 0;
     for (int k = 0; k < 2; k++) {
@@ -81,7 +74,7 @@ static double energy_aliased(const struct monostatic *m, const struct sight *sig
    what lies 1/d beyond its wavenumber is turned by 2 pi displacement/d too much. */
 static double aliased_left(const struct monostatic *m, const struct sight *sight)
 {
-    const struct spectrum_setting s = setting(m);
+    const struct spectrum_setting s = monostatic_setting(m);
     const double band = spectrum_wavenumber(&s, sight->ends[1]) - spectrum_wavenumber(&s, sight->ends[0]);
     double turned = 0;
     for (int row = 0; row < m->rows; row++) {
@@ -251,7 +244,7 @@ static void coefficients_fill(struct monostatic *m, const struct finding *f, int
 
 double complex monostatic_value(const struct monostatic *m, int term, int range, double nu)
 {
-    const struct spectrum_setting s = setting(m);
+    const struct spectrum_setting s = monostatic_setting(m);
     const double complex *u = m->coefficients + (term * MONOSTATIC_RANGES + range) * MONOSTATIC_ANGLES;
     double weights[4];
     u += cubic_weights((spectrum_angle(&s, nu) - m->angle_first) / m->angle_step, MONOSTATIC_ANGLES, weights);
@@ -263,7 +256,7 @@ double complex monostatic_value(const struct monostatic *m, int term, int range,
 static void errors_left(const struct monostatic *m, const struct finding *f, int terms, double left[])
 {
     const struct acquisition *a = m->acquisition;
-    struct spectrum_setting at = setting(m);
+    struct spectrum_setting at = monostatic_setting(m);
     double worst[MONOSTATIC_TERMS + 1] = {0};
     for (int range = 0; range < MONOSTATIC_RANGES; range += MONOSTATIC_RANGES / 2) {
         double sums[MONOSTATIC_TERMS + 1] = {0};
