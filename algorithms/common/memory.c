@@ -76,7 +76,7 @@ void *memory_columns(size_t alignment, size_t bytes)
 }
 
 /* A page ahead of the memory stores its size. */
-void *memory_sparse(size_t bytes)
+void *memory_sparse(size_t bytes, bool huge)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE), all = bytes + page;
     if (all < bytes)
@@ -84,8 +84,8 @@ void *memory_sparse(size_t bytes)
     char *memory = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (memory == MAP_FAILED)
         return NULL;
-#ifdef MADV_NOHUGEPAGE
-    madvise(memory, all, MADV_NOHUGEPAGE); /* advice: huge pages take room for unwritten parts, too */
+#ifdef MADV_HUGEPAGE
+    madvise(memory, all, huge ? MADV_HUGEPAGE : MADV_NOHUGEPAGE); /* advice */
 #endif
     *(size_t *)memory = all;
     return memory + page;

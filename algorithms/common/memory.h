@@ -19,9 +19,10 @@ void *memory_aligned(size_t alignment, size_t bytes);
    system has them. Their first use can take a third of a second, as the system clears and gathers the pages. */
 void *memory_columns(size_t alignment, size_t bytes);
 
-/* Zeroed memory, at a page; only pages that are written take room. Freed by memory_sparse_free, which accepts NULL.
-   NULL where the address space is too small. */
-void *memory_sparse(size_t bytes);
+/* Zeroed memory, at a page; only pages that are written take room. Huge ones, where the system has them, are faster to
+   write in long stretches, and take up to 2 MB more at the ends of each. Freed by memory_sparse_free, which accepts
+   NULL. NULL where the address space is too small. */
+void *memory_sparse(size_t bytes, bool huge);
 /* Give up the room of bytes [begin, end), whose values are then lost, but for pages that have others as well. */
 void memory_sparse_drop(void *memory, size_t begin, size_t end);
 void memory_sparse_free(void *memory);

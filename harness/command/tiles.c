@@ -46,6 +46,12 @@ static void settings_format(const struct task *task, const struct scene *scene, 
              g->r_first, g->r_step, g->r_count, g->angle_rad, scene->hash, origin->commit);
 }
 
+/* A shard has a stretch of tiles: neighbours read much the same pings. */
+static bool is_of_shard(const struct tiles *tiles, const struct shard *shard, int n)
+{
+    return shard->count == 0 || (long long)n * shard->count / tiles_count(tiles) == shard->number - 1;
+}
+
 /* The first, or the next, tile for this process after tile `n`; -1: none is left. */
 static int tile_next(const struct tiles *tiles, const struct shard *shard, int n)
 {
@@ -53,7 +59,7 @@ static int tile_next(const struct tiles *tiles, const struct shard *shard, int n
         return ranks_next();
     do
         n++;
-    while (n < tiles_count(tiles) && (tiles->done[n] || (shard->count > 0 && n % shard->count != shard->number - 1)));
+    while (n < tiles_count(tiles) && (tiles->done[n] || !is_of_shard(tiles, shard, n)));
     return n < tiles_count(tiles) ? n : -1;
 }
 
@@ -72,7 +78,7 @@ static enum status file_open(struct tiles *tiles, const struct shard *shard, con
         if (!tiles->done[n])
             todo[count++] = n;
     if (todo)
-        ranks_offer(count, todo);
+        ranks_offer(count, todo, true);
     else
         status = status_set(STATUS_FAILED, "%s: out of memory for its tiles", tiles->path);
     free(todo);

@@ -53,7 +53,7 @@ enum status tile_echoes_open(const struct scene *scene, enum precision precision
     const size_t size = size_product(pings, (size_t)a->receivers, (size_t)a->samples, precision_size(precision));
     held->has = calloc(pings, sizeof *held->has);
     held->wanted = calloc(pings, sizeof *held->wanted);
-    held->echoes = (struct echoes){a, precision, size > 0 ? memory_sparse(size) : NULL, 0};
+    held->echoes = (struct echoes){a, precision, size > 0 ? memory_sparse(size, true) : NULL, 0};
     return held->has && held->wanted && held->echoes.samples
                ? STATUS_OK
                : status_set(STATUS_FAILED, "%s: out of memory for a tile's echoes", scene->recording.path);

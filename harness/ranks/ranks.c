@@ -25,6 +25,12 @@ struct list {
     int *numbers, count, next;
 };
 
+/* A rank that rank 0 hands out to. */
+struct asker {
+    bool waiting;
+    int next; /* place in the list behind its last task */
+};
+
 /* Of this process: the parent, or its child, which has the state at its beginning. */
 static struct {
     int number, count;
@@ -37,9 +43,10 @@ static struct {
     struct list ours; /* tasks that its rank was given; `next`: to hand to the child again */
     bool wanting, asked, joining;
     /* Of rank 0's: */
-    struct list todo;
-    bool offered, *waiting; /* [count] */
-    int ended;              /* ranks other than 0 */
+    struct list todo; /* a number that was handed out is NONE */
+    bool offered, neighbours;
+    struct asker *askers; /* [count] */
+    int ended;            /* ranks other than 0 */
 } ranks = {.count = 1, .channel = {-1, -1}};
 
 static int number_of(const char *variable, int otherwise)
@@ -85,8 +92,8 @@ enum status ranks_begin(void)
                           "%d ranks, but this build is without MPI: one process is accepted, or a build where "
                           "libopenmpi-dev is installed",
                           started);
-    ranks.waiting = calloc((size_t)ranks.count, sizeof *ranks.waiting);
-    if (!ranks.waiting)
+    ranks.askers = calloc((size_t)ranks.count, sizeof *ranks.askers);
+    if (!ranks.askers)
         return status_set(STATUS_FAILED, "no memory for %d ranks", ranks.count);
     provenance_fill(&ours, omp_get_max_threads());
     memset(ours.date, 0, sizeof ours.date);
@@ -145,11 +152,12 @@ bool ranks_again(void)
     return ranks.again;
 }
 
-void ranks_offer(int count, const int *tasks)
+void ranks_offer(int count, const int *tasks, bool neighbours)
 {
     if (ranks.count == 1 || ranks.again)
         return;
     number_put(ranks.channel[1], OFFER);
+    number_put(ranks.channel[1], neighbours);
     number_put(ranks.channel[1], count);
     bytes_move(ranks.channel[1], (void *)tasks, (size_t)count * sizeof *tasks, false);
 }
@@ -198,14 +206,15 @@ static void list_take(struct list *list, int count)
 /* What the child sent. */
 static void child_serve(void)
 {
-    int what, count;
+    int what, neighbours, count;
     if (!numbers_get(ranks.channel[0], &what, 1))
         return;
     ranks.wanting |= what == WANTED;
     ranks.joining |= what == JOIN;
-    if (what != OFFER || !numbers_get(ranks.channel[0], &count, 1))
+    if (what != OFFER || !numbers_get(ranks.channel[0], &neighbours, 1) || !numbers_get(ranks.channel[0], &count, 1))
         return;
     list_take(&ranks.todo, count);
+    ranks.neighbours = neighbours;
     ranks.offered = numbers_get(ranks.channel[0], ranks.todo.numbers, count);
 }
 
@@ -217,9 +226,44 @@ static void task_got(int task)
     ranks.asked = false;
 }
 
-static int todo_next(void)
+/* Does a rank go on at this place of the list? */
+static bool is_next(int place)
 {
-    return ranks.todo.next < ranks.todo.count ? ranks.todo.numbers[ranks.todo.next++] : NONE;
+    for (int k = 0; k < ranks.count; k++)
+        if (ranks.askers[k].next == place)
+            return true;
+    return false;
+}
+
+/* The place of a rank's next task. Among neighbours it goes on where it is; where there is nothing left, it takes the
+   longest stretch that is left, or the second half of one where another rank goes on. */
+static int place_next(int asker)
+{
+    const struct list *todo = &ranks.todo;
+    int place = ranks.neighbours ? ranks.askers[asker].next : todo->next, longest = 0;
+    if (!ranks.neighbours || (place > 0 && place < todo->count && todo->numbers[place] != NONE))
+        return place;
+    place = todo->count;
+    for (int first = 0, end; first < todo->count; first = end + 1) {
+        for (end = first; end < todo->count && todo->numbers[end] != NONE; end++)
+            ;
+        if (end - first <= longest)
+            continue;
+        longest = end - first;
+        place = first > 0 && is_next(first) ? first + longest / 2 : first;
+    }
+    return place;
+}
+
+static int todo_next(int asker)
+{
+    const int place = place_next(asker);
+    if (place >= ranks.todo.count)
+        return NONE;
+    const int task = ranks.todo.numbers[place];
+    ranks.todo.numbers[place] = NONE;
+    ranks.todo.next = ranks.askers[asker].next = place + 1;
+    return task;
 }
 
 /* What other parents sent. */
@@ -227,15 +271,15 @@ static void others_serve(void)
 {
     int from, value;
     while (link_take(&from, &value)) {
-        ranks.waiting[from] |= value == WANTED;
+        ranks.askers[from].waiting |= value == WANTED;
         ranks.ended += value == ENDED;
         if (value >= NONE)
             task_got(value);
     }
     for (int k = 1; k < ranks.count && ranks.offered; k++)
-        if (ranks.waiting[k]) {
-            ranks.waiting[k] = false;
-            link_send(k, todo_next());
+        if (ranks.askers[k].waiting) {
+            ranks.askers[k].waiting = false;
+            link_send(k, todo_next(k));
         }
 }
 
@@ -246,7 +290,7 @@ static void child_answer(void)
         if (ranks.number > 0)
             link_send(0, WANTED);
         else if (ranks.offered)
-            task_got(todo_next());
+            task_got(todo_next(0));
         ranks.asked = ranks.number > 0;
     }
     if (ranks.wanting && ranks.ours.next < ranks.ours.count) {

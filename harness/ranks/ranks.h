@@ -34,9 +34,10 @@ void ranks_end(int status);
 
 /* Does it follow one that crashed? */
 bool ranks_again(void);
-/* Rank 0: the tasks that are to be done, in the order in which they are handed out. Until then others wait for one.
-   What a child that follows a crashed one offers is ignored. */
-void ranks_offer(int count, const int *tasks);
+/* Rank 0: the tasks that are to be done, in the order in which they are handed out. Of neighbours, which read much the
+   same, each rank is given a stretch instead. Until then others wait for one. What a child that follows a crashed one
+   offers is ignored. */
+void ranks_offer(int count, const int *tasks, bool neighbours);
 /* Others: wait until rank 0 has offered tasks; what it prepares is then there. */
 void ranks_meet(void);
 /* The next task; -1: none is left. To a child that follows a crashed one all that the rank has are handed out again. */

@@ -207,7 +207,7 @@ static enum status cells_offer(const struct cells *cells)
     for (int n = 0; n < cells->count; n++)
         if (cells->list[n].mine)
             tasks[count++] = n;
-    ranks_offer(count, tasks);
+    ranks_offer(count, tasks, false);
     free(tasks);
     return STATUS_OK;
 }

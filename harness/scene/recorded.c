@@ -109,7 +109,7 @@ static enum status recording_open(const char *path, struct scene *scene)
     const size_t each = (size_t)a->receivers * (size_t)a->samples,
                  size = size_product((size_t)a->pings, each, sizeof(double complex), 1);
     bool *read = calloc((size_t)a->pings, sizeof *read);
-    void *samples = size > 0 ? memory_sparse(size) : NULL;
+    void *samples = size > 0 ? memory_sparse(size, false) : NULL;
     recording->path = strdup(path);
     if (!read || !samples || !recording->path || stat(path, &file) != 0)
         status = status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
@@ -208,7 +208,7 @@ static enum status file_echoes(const struct scene *scene, struct echoes *echoes)
     const struct recording_file *file = &scene->recording;
     const size_t each = (size_t)a->receivers * (size_t)a->samples, pings = (size_t)file->pings;
     const size_t size = size_product(pings, each, sizeof(double complex), 1);
-    double complex *samples = size > 0 ? memory_sparse(size) : NULL;
+    double complex *samples = size > 0 ? memory_sparse(size, false) : NULL;
     bool *read = calloc(pings, sizeof *read);
     double largest = 0;
     enum status status = STATUS_OK;
