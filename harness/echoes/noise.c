@@ -7,7 +7,7 @@
 #include "common/pulse_band.h"
 #include "echoes/echo_data.h"
 
-enum { RECORDS_MOST = 64 };
+enum { RECORDS_MOST = 64, PINGS_MOST = 16 };
 static const double BINS_LEAST = 4;  /* beyond the band, to either side */
 static const double TAPER = 3.0 / 8; /* of white noise's energy, what a raised cosine leaves */
 static const double TAPERED = 2;     /* bins that it smears the band's edge over */
@@ -107,25 +107,45 @@ static double share_of(const struct energies *sum, const struct expected *expect
     return expected->kept * of_noise / (expected->kept * of_noise + 1 - of_noise);
 }
 
-/* From one record that is measured to the next, of which the first is step/2. */
-static size_t records_step(const struct acquisition *a)
+/* Of a row of `count`: every step-th is measured, from step/2 on. */
+static int step_for(int count, int most)
 {
-    return ((size_t)a->pings * (size_t)a->receivers + RECORDS_MOST - 1) / RECORDS_MOST;
+    return (count + most - 1) / most;
+}
+
+/* Few pings, of several receivers each: pings are read whole. */
+static void steps_of(const struct acquisition *a, int *ping, int *receiver)
+{
+    const int few = (RECORDS_MOST + a->receivers - 1) / a->receivers;
+    *ping = step_for(a->pings, few > PINGS_MOST ? few : PINGS_MOST);
+    *receiver = step_for(a->receivers, step_for(RECORDS_MOST, step_for(a->pings, *ping)));
 }
 
 void noise_pings(const struct acquisition *a, bool *read)
 {
-    const size_t records = (size_t)a->pings * (size_t)a->receivers, step = records_step(a);
-    for (size_t n = step / 2; n < records; n += step)
-        read[n / (size_t)a->receivers] = true;
+    int ping, receiver;
+    steps_of(a, &ping, &receiver);
+    for (int p = ping / 2; p < a->pings; p += ping)
+        read[p] = true;
+}
+
+/* The records that are measured, as they lie in `values`; returns their number. */
+static int records_of(const struct acquisition *a, const double complex *values, const double complex **records)
+{
+    int ping, receiver, count = 0;
+    steps_of(a, &ping, &receiver);
+    for (int p = ping / 2; p < a->pings; p += ping)
+        for (int m = receiver / 2; m < a->receivers; m += receiver)
+            records[count++] = values + ((size_t)p * (size_t)a->receivers + (size_t)m) * (size_t)a->samples;
+    return count;
 }
 
 enum status noise_measure(const struct echoes *echoes, double *share)
 {
     const struct acquisition *a = echoes->acquisition;
-    const size_t records = (size_t)a->pings * (size_t)a->receivers, samples = (size_t)a->samples;
-    const size_t step = records_step(a);
-    const double complex *values = echoes->samples;
+    const size_t samples = (size_t)a->samples;
+    const double complex *records[2 * RECORDS_MOST];
+    const int count = records_of(a, echoes->samples, records);
     struct expected expected;
     struct energies sum = {0, 0};
     double most = 0;
@@ -135,10 +155,10 @@ enum status noise_measure(const struct echoes *echoes, double *share)
         return status;
     fftw_complex *record = fftw_malloc(samples * sizeof *record);
     fftw_plan plan = record ? fftw_plan_dft_1d(a->samples, record, record, FFTW_FORWARD, FFTW_ESTIMATE) : NULL;
-    for (size_t n = step / 2; n < records; n += step)
-        most = fmax(most, largest_part(values + n * samples, samples));
-    for (size_t n = step / 2; n < records && plan && most > 0; n += step)
-        record_add(values + n * samples, most, a->samples, expected.first, plan, record, &sum);
+    for (int n = 0; n < count; n++)
+        most = fmax(most, largest_part(records[n], samples));
+    for (int n = 0; n < count && plan && most > 0; n++)
+        record_add(records[n], most, a->samples, expected.first, plan, record, &sum);
     if (plan)
         fftw_destroy_plan(plan);
     else

@@ -13,7 +13,7 @@ double noise_of_targets(const struct acquisition *a, int target_count, const str
    Errors: STATUS_FAILED without memory. */
 enum status noise_measure(const struct echoes *echoes, double *share);
 
-/* Set read[pings] of the pings that it is measured on. */
+/* Set read[pings] of the pings, some 16, that it is measured on. */
 void noise_pings(const struct acquisition *acquisition, bool *read);
 
 #endif
