@@ -1,5 +1,5 @@
-"""The pages as a site: ninja -C build docs. Its source is the repository's root, so that links lead to the same files as
-in a clone; those to files that are no pages are downloads."""
+"""The pages as a site (docs/site.sh). Links lead to the same files as in a clone; those to files that are no pages are
+downloads."""
 project = 'sasbench'
 author = 'the sasbench authors'
 extensions = ['myst_parser']
@@ -8,8 +8,8 @@ html_title = project
 html_static_path = ['site.css']
 html_css_files = ['site.css']
 root_doc = 'docs/index'
-include_patterns = ['*.md', 'docs/*.md', 'docs/papers/*.md', 'algorithms/README.md', 'results/README.md',
-                    'scenes/README.md']
+include_patterns = ['*.md', 'docs/*.md', 'docs/papers/*.md', 'docs/algorithms/*.md', 'algorithms/README.md',
+                    'results/README.md', 'scenes/README.md']
 myst_heading_anchors = 3
 
 

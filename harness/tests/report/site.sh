@@ -1,20 +1,11 @@
 #!/bin/sh
 # The pages of docs/ as a site, by docs/conf.py: no warning of Sphinx, and every link between its files leads somewhere.
-# Usage: site.sh SOURCE_ROOT. Exit status 77 without Sphinx, furo or MyST (Debian packages python3-sphinx, furo,
-# python3-myst-parser).
+# Usage: site.sh SOURCE_ROOT PROGRAM. Exit status 77 without Sphinx.
 set -eu
-python=
-for try in python3 /usr/bin/python3; do
-    ! "$try" -c 'import furo, myst_parser, sphinx' 2>/dev/null || python=$try
-done
-if [ -z "$python" ]; then
-    echo "skipped: there is no Sphinx, furo or MyST (Debian packages python3-sphinx, furo, python3-myst-parser)"
-    exit 77
-fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-PYTHONDONTWRITEBYTECODE=1 "$python" -m sphinx -q -n -W -c "$1/docs" -b html -d "$folder/doctrees" "$1" "$folder/site"
-"$python" - "$folder/site" <<'END'
+"$1/docs/site.sh" "$1" "$2" "$folder"
+python3 - "$folder/site" <<'END'
 import html.parser, os, sys, urllib.parse
 class Page(html.parser.HTMLParser):
     def __init__(self, path):
