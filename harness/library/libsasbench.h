@@ -30,7 +30,7 @@ struct sasbench_scene;
 struct sasbench_plan;
 struct sasbench_table;
 
-/* "0.2.0": a static text. */
+/* "1.0.0": a static text. */
 const char *sasbench_version(void);
 /* The calling thread's last error, one line; valid until its next one. */
 const char *sasbench_message(void);

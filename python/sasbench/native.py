@@ -145,7 +145,7 @@ def _load() -> ctypes.CDLL:
     # As the program does, which its images' times assume: waiting threads leave the processor to others.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     beside = pathlib.Path(__file__).resolve().with_name("libsasbench.so")
-    path = os.environ.get("SASBENCH_LIBRARY") or (str(beside) if beside.exists() else "libsasbench.so.0")
+    path = os.environ.get("SASBENCH_LIBRARY") or (str(beside) if beside.exists() else "libsasbench.so.1")
     library = ctypes.CDLL(path)
     for name, (result, arguments) in FUNCTIONS.items():
         function = getattr(library, "sasbench_" + name)
