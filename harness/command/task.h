@@ -12,7 +12,7 @@ struct task {
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *time, *memory,
         *nodes, *seed, *name, *seconds, *tile, *threads, *shard, *timeout;
-    bool ab, quick, all, flops, verify, docs;
+    bool ab, quick, all, flops, verify, docs, site;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
 };

@@ -136,6 +136,17 @@ static void commands_show(struct page *page, const struct points *points)
     page_part_end(page);
 }
 
+enum status report_front_show(struct page *page, const struct families *families, const struct points *points)
+{
+    fputs("<div class=\"pair\"><div>\n", page->stream);
+    const enum status status = page_chart(page, families, points);
+    fputs("</div><div>\n", page->stream);
+    front_table(page, points);
+    commands_show(page, points);
+    fputs("</div></div>\n", page->stream);
+    return status;
+}
+
 enum status report_fronts_show(struct page *page, const struct points *points, int scene_count)
 {
     struct families families;
@@ -148,12 +159,7 @@ enum status report_fronts_show(struct page *page, const struct points *points, i
             continue;
         snprintf(id, sizeof id, "scene-%d", s + 1);
         page_heading(page, 3, id, points[s].scene);
-        fputs("<div class=\"pair\"><div>\n", page->stream);
-        status = page_chart(page, &families, &points[s]);
-        fputs("</div><div>\n", page->stream);
-        front_table(page, &points[s]);
-        commands_show(page, &points[s]);
-        fputs("</div></div>\n", page->stream);
+        status = report_front_show(page, &families, &points[s]);
     }
     return status;
 }
@@ -194,7 +200,6 @@ void report_cheapest_show(struct page *page, const struct results *results, cons
     }
     if (count == 0)
         return;
-    page_heading(page, 2, "fastest", "The fastest for each power of ten of error");
     page_table_begin(page, count + 1, columns);
     for (int s = 0; s < scene_count; s++) {
         char texts[DECADES_MOST][700];

@@ -14,8 +14,10 @@ void report_sentences_show(struct page *page, const struct results *results, int
                            const char *const *scenes);
 /* All scenes at a glance. */
 void report_overview_show(struct page *page, const struct points *points, int scene_count);
-/* For each scene a chart, its front as a table, and the commands that measure the front again. Errors: as
-   page_chart. */
+/* A scene's chart, its front as a table, and the commands that measure the front again. Errors: as page_chart. */
+struct families;
+enum status report_front_show(struct page *page, const struct families *families, const struct points *points);
+/* The same for each scene. */
 enum status report_fronts_show(struct page *page, const struct points *points, int scene_count);
 /* A row for each scene, a column for each power of ten of error that any setting reaches. */
 void report_cheapest_show(struct page *page, const struct results *results, const struct points *points,
