@@ -86,11 +86,12 @@ static enum status rows_add(struct kind *kind, const struct submission *submissi
     const int rows = submission->results.csv.row_count, before = kind->newest.csv.row_count;
     const size_t room = (size_t)before + (size_t)rows + 1;
     struct measurement *list = realloc(kind->newest.measurements, room * sizeof *list);
+    if (list)
+        kind->newest.measurements = list;
     struct origin *from = list ? realloc(kind->from, room * sizeof *from) : NULL;
-    kind->newest.measurements = list ? list : kind->newest.measurements;
-    kind->from = from ? from : kind->from;
     if (!from)
         return status_set(STATUS_FAILED, "%s: no memory for %d rows", submission->directory, rows);
+    kind->from = from;
     for (int k = 0; k < rows; k++) {
         const struct measurement *row = &submission->results.measurements[k];
         int n = 0;
