@@ -94,7 +94,7 @@ static void heading_print(const struct scene *scene)
         snprintf(size, sizeof size, "%d x %d pixels", scene->patches[0].x_count, scene->patches[0].r_count);
     else
         snprintf(size, sizeof size, "%.0f pixels in %d patches", pixels, scene->patch_count);
-    snprintf(what, sizeof what, "%s, %.2g %% of the ranges, %s echoes", size, 100 * fmin(imaged_m / recorded_m, 1),
+    snprintf(what, sizeof what, "%s, %.3g %% of the ranges, %s echoes", size, 100 * fmin(imaged_m / recorded_m, 1),
              a->compressed ? "compressed" : "raw");
     table_scene(stdout, scene->name, what);
     check_warnings(stdout, scene, false);
