@@ -148,7 +148,8 @@ static enum status notes_take(const char *path, const struct grid *grid, struct 
     }
     if (scene->patch_count == 0)
         return status_set(STATUS_INVALID,
-                          "%s: variable `image_grid` is missing; --grid xmin:xstep:xcount,rmin:rstep:rcount is needed; `info` prints one to begin with",
+                          "%s: variable `image_grid` is missing; --grid xmin:xstep:xcount,rmin:rstep:rcount is needed; "
+                          "`info` prints one to begin with",
                           path);
     for (int k = 0; k < scene->patch_count; k++)
         if (grid_check(&scene->patches[k], path) != STATUS_OK)
