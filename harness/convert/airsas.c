@@ -1,7 +1,8 @@
 /* AirSAS (Penn State's synthetic aperture sonar in air): HDF5 with real passband samples, and two tables beside it.
 
    Sample n of a ping lies at (n - group delay)/fs. Its spectrum about the chirp's middle becomes baseband; the chirp
-   becomes the pulse. The sound speed follows the temperature of each ping; an echo file has one, their mean. */
+   becomes the pulse. The sound speed follows the temperature of each ping;
+   where it varies, echoes are compressed and move to the mean (speeds.h). */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@
 #include "convert/layout.h"
 #include "common/fft_length.h"
 #include "echoes/matfile.h"
+#include "echoes/speeds.h"
 #include "files/csv.h"
 
 #define IMAGE_PLANE 0.6032 /* m: z of the plane that their own images lie in; ours lies at 0 */
@@ -145,25 +147,42 @@ static enum status shapes_check(const char *path, const struct variable *v, int 
     return STATUS_OK;
 }
 
-/* The mean of the pings' sound speeds; *spread: how far one is off, relative. */
-static enum status sound_speed_find(const char *path, const struct variable *temperature, double *mean, double *spread)
+/* The pings' own, free(). */
+static enum status sound_speeds_find(const char *path, const struct variable *temperature, double **speeds)
 {
     const size_t pings = temperature->dims[0], sensors = temperature->dims[1];
-    double least = INFINITY, most = 0;
-    *mean = 0;
+    *speeds = calloc(pings, sizeof **speeds);
+    if (!*speeds)
+        return status_set(STATUS_FAILED, "%s: no memory for its sound speeds", path);
     for (size_t p = 0; p < pings; p++) {
         const double celsius =
             (field_number(temperature, p) + field_number(temperature, p + (sensors - 1) * pings)) / 2;
-        const double speed = 331.6 + 0.61 * celsius;
+        (*speeds)[p] = 331.6 + 0.61 * celsius;
         if (!(fabs(celsius) <= 100))
             return status_set(STATUS_INVALID, "%s: variable `%s` of ping %zu is %g; %s is needed", path,
                               fields[TEMPERATURE].name, p + 1, celsius, fields[TEMPERATURE].accepted);
-        least = fmin(least, speed);
-        most = fmax(most, speed);
-        *mean += speed / (double)pings;
     }
-    *spread = fmax(*mean / least - 1, 1 - *mean / most);
     return STATUS_OK;
+}
+
+/* Compressed echoes of their mean, where they differ (speeds.h). */
+static enum status sound_speeds_unite(const char *path, const double *speeds, struct recording *recording)
+{
+    struct acquisition *a = &recording->acquisition;
+    const int length = a->pulse_length;
+    double complex *pulse = calloc((size_t)length + 1, sizeof *pulse);
+    if (!pulse)
+        return status_set(STATUS_FAILED, "%s: no memory for its pulse", path);
+    memcpy(pulse, a->pulse, (size_t)length * sizeof *pulse);
+    enum status status = speeds_unite(path, speeds, a);
+    if (status == STATUS_OK)
+        status = speeds_move(a, speeds, length, pulse, NULL, PRECISION_DOUBLE, (void *)recording->echoes.samples);
+    if (status == STATUS_OK && a->compressed)
+        snprintf(recording->note, sizeof recording->note,
+                 "echoes are compressed, and moved from the sound speeds of the pings to their mean, %.6g m/s",
+                 a->sound_speed);
+    free(pulse);
+    return status;
 }
 
 /* Their replica's complex form, sin(x) = Re exp(j (x - pi/2)), under MATLAB's tukeywin. */
@@ -249,7 +268,7 @@ static enum status airsas_read(const char *const *paths, int count, struct recor
     struct variable v[FIELDS];
     struct vector sensors[1 + CHANNELS] = {{0}};
     struct chirp chirp = {0};
-    double spread = 0;
+    double *speeds = NULL;
     int first = 0;
     (void)count;
     enum status status = fields_read(paths[0], fields, FIELDS, v);
@@ -259,20 +278,17 @@ static enum status airsas_read(const char *const *paths, int count, struct recor
     if (status == STATUS_OK)
         status = positions_check(paths[0], fields[POSITION].name, &v[POSITION], 0.02);
     if (status == STATUS_OK)
-        status = sound_speed_find(paths[0], &v[TEMPERATURE], &recording->acquisition.sound_speed, &spread);
+        status = sound_speeds_find(paths[0], &v[TEMPERATURE], &speeds);
     if (status == STATUS_OK)
         status = chirp_read(paths[0], &chirp);
     if (status == STATUS_OK)
         status = sensors_read(paths[0], v, sensors);
     if (status == STATUS_OK)
         status = recording_fill(paths[0], v, first, &chirp, sensors, recording);
-    variables_free(v, FIELDS);
-    const struct acquisition *a = &recording->acquisition;
     if (status == STATUS_OK)
-        snprintf(recording->note, sizeof recording->note,
-                 "sound speed %.6g m/s, the mean of all pings; their own would turn phases by up to %.2g rad at %.4g m",
-                 a->sound_speed, 2 * M_PI * a->fc * spread * (a->t0[0] + a->samples / a->fs),
-                 a->sound_speed / 2 * (a->t0[0] + a->samples / a->fs));
+        status = sound_speeds_unite(paths[0], speeds, recording);
+    variables_free(v, FIELDS);
+    free(speeds);
     return status;
 }
 

@@ -8,6 +8,7 @@
 
 #include "echoes/matvar.h"
 #include "echoes/noise.h"
+#include "echoes/speeds.h"
 
 enum echo_variable {
     FORMAT,
@@ -43,7 +44,7 @@ static const struct wanted echo_variables[ECHO_VARIABLES] = {
     [FS] = {"fs", KIND_SCALAR, false, "a scalar in Hz"},
     [FC] = {"fc", KIND_SCALAR, false, "a scalar in Hz"},
     [BANDWIDTH] = {"bandwidth", KIND_SCALAR, false, "a scalar in Hz"},
-    [SOUND_SPEED] = {"sound_speed", KIND_SCALAR, false, "a scalar in m/s"},
+    [SOUND_SPEED] = {"sound_speed", KIND_REAL, false, "a real scalar or [1 x P] in m/s"},
     [T0] = {"t0", KIND_REAL, false, "a real scalar or [1 x P] in s"},
     [TX] = {"tx", KIND_REAL, false, "a real array [3 x P] in m"},
     [RX] = {"rx", KIND_REAL, false, "a real array [3 x M x P] in m"},
@@ -58,6 +59,16 @@ static const struct wanted echo_variables[ECHO_VARIABLES] = {
     [AREA] = {"area", KIND_REAL, true, "a real array [1 x 4] in m (x, r, half_x, half_r), the last two > 0,"},
 };
 _Static_assert((int)ECHO_VARIABLES <= (int)WANTED_MAX, "send_variables keeps a mark for each variable");
+
+/* Its real parts, free(). NULL without memory. */
+static double *reals_of(const struct variable *variable)
+{
+    const size_t count = variable_count(variable);
+    double *reals = calloc(count + 1, sizeof *reals);
+    for (size_t k = 0; k < count && reals; k++)
+        reals[k] = creal(variable->values[k]);
+    return reals;
+}
 
 static double scalar_or(const struct variable *variable, double missing)
 {
@@ -91,18 +102,20 @@ static enum status shapes_read(struct variable *v)
     return status;
 }
 
+static bool speeds_fit(const struct variable *speeds, size_t pings)
+{
+    return variable_has_shape(speeds, 1, pings, 1) || variable_has_shape(speeds, pings, 1, 1);
+}
+
 static enum status check_echo_shapes(const char *path, const struct variable *v)
 {
     const struct variable *samples = &v[SAMPLES];
     size_t receivers = samples->dims[1], pings = samples->dims[2];
-    for (int i = 0; i < 3; i++) {
-        if (samples->dims[i] > INT_MAX) {
+    for (int i = 0; i < 3; i++)
+        if (samples->dims[i] > INT_MAX)
             return status_set(STATUS_INVALID,
-                              "%s: variable `samples` is [%zu x %zu x %zu]; at most %d each is "
-                              "accepted",
-                              path, samples->dims[0], samples->dims[1], samples->dims[2], INT_MAX);
-        }
-    }
+                              "%s: variable `samples` is [%zu x %zu x %zu]; at most %d each is accepted", path,
+                              samples->dims[0], samples->dims[1], samples->dims[2], INT_MAX);
     const struct variable *pulse = &v[PULSE];
     bool is_vector = (pulse->dims[0] == 1 || pulse->dims[1] == 1) && pulse->dims[2] == 1;
     bool pulse_fits = !pulse->values || (is_vector && variable_count(pulse) <= INT_MAX);
@@ -113,6 +126,7 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
     } shapes[] = {
         {T0, variable_has_shape(&v[T0], 1, 1, 1) || variable_has_shape(&v[T0], 1, pings, 1)
                  || variable_has_shape(&v[T0], pings, 1, 1)},
+        {SOUND_SPEED, variable_has_shape(&v[SOUND_SPEED], 1, 1, 1) || speeds_fit(&v[SOUND_SPEED], pings)},
         {TX, variable_has_shape(&v[TX], 3, pings, 1)},
         {RX, variable_has_shape(&v[RX], 3, receivers, pings)},
         {VELOCITY, variable_has_shape(&v[VELOCITY], 3, 1, 1) || variable_has_shape(&v[VELOCITY], 3, pings, 1)},
@@ -179,13 +193,11 @@ static enum status check_echo_values(const char *path, const struct variable *v)
 {
     const struct variable *format = &v[FORMAT];
     size_t length = variable_count(format);
-    while (length > 0 && creal(format->values[length - 1]) == 0) {
+    while (length > 0 && creal(format->values[length - 1]) == 0)
         length--; /* texts of a fixed length are padded */
-    }
     bool is_ours = length == strlen(format_text);
-    for (size_t i = 0; is_ours && i < strlen(format_text); i++) {
+    for (size_t i = 0; is_ours && i < strlen(format_text); i++)
         is_ours = creal(format->values[i]) == format_text[i];
-    }
     if (!is_ours) {
         char text[32] = ""; /* its value, as far as it is plain text */
         for (size_t i = 0; i < length && i < sizeof text - 1; i++) {
@@ -196,9 +208,8 @@ static enum status check_echo_values(const char *path, const struct variable *v)
                           echo_variables[FORMAT].accepted);
     }
     enum status status = check_echo_scalars(path, v);
-    if (status != STATUS_OK) {
+    if (status != STATUS_OK)
         return status;
-    }
     if (scalar_or(&v[COMPRESSED], 1) == 0 && !v[PULSE].values) {
         return status_set(STATUS_INVALID, "%s: variable `pulse` is missing; raw echoes (compressed 0) need %s", path,
                           echo_variables[PULSE].accepted);
@@ -237,22 +248,19 @@ static enum status normalise_pulse(const char *path, const struct variable *v, i
     size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
     const double largest = largest_part(v[PULSE].values, pulse_count);
     *exponent = 0;
-    if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20)) {
+    if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20))
         return STATUS_OK;
-    }
     frexp(largest, exponent);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++)
         for (size_t i = 0; i < samples_count(both[k]); i++) {
             double re = ldexp(creal(both[k]->values[i]), -*exponent), im = ldexp(cimag(both[k]->values[i]), -*exponent);
-            if (k == 1 && (!isfinite(re) || !isfinite(im))) {
+            if (k == 1 && (!isfinite(re) || !isfinite(im)))
                 return status_set(STATUS_INVALID,
-                                  "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio "
-                                  "must fit double",
+                                  "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio must "
+                                  "fit double",
                                   path, creal(both[k]->values[i]), cimag(both[k]->values[i]), largest);
-            }
             both[k]->values[i] = __builtin_complex(re, im);
         }
-    }
     return STATUS_OK;
 }
 
@@ -280,22 +288,34 @@ static enum status acquisition_fill(const char *path, const struct variable *v, 
     a->compressed = scalar_or(&v[COMPRESSED], 0) == 1;
     a->pulse_length = v[PULSE].values ? (int)variable_count(&v[PULSE]) : 0;
     enum status status = acquisition_allocate(a);
-    if (status != STATUS_OK) {
+    if (status != STATUS_OK)
         return status;
-    }
     bool one_t0 = variable_count(&v[T0]) == 1, one_velocity = variable_count(&v[VELOCITY]) == 3;
     for (size_t p = 0, receivers = (size_t)a->receivers; p < (size_t)a->pings; p++) {
         a->t0[p] = creal(v[T0].values[one_t0 ? 0 : p]);
         a->tx[p] = variable_vector(&v[TX], p);
         a->velocity[p] = variable_vector(&v[VELOCITY], one_velocity ? 0 : p);
-        for (size_t m = 0; m < receivers; m++) {
+        for (size_t m = 0; m < receivers; m++)
             a->rx[p * receivers + m] = variable_vector(&v[RX], p * receivers + m);
-        }
     }
-    for (int k = 0; k < a->pulse_length; k++) {
+    for (int k = 0; k < a->pulse_length; k++)
         a->pulse[k] = v[PULSE].values[k];
-    }
     return acquisition_check(a, path);
+}
+
+/* Pings with a sound speed each: the acquisition gets one, and the samples, if they are there, move to it. */
+static enum status speeds_apply(const char *path, const struct variable *v, struct acquisition *a)
+{
+    const struct variable *pulse = a->compressed ? NULL : &v[PULSE];
+    double *speeds = reals_of(&v[SOUND_SPEED]);
+    if (!speeds)
+        return status_set(STATUS_FAILED, "%s: no memory for its sound speeds", path);
+    enum status status = variable_count(&v[SOUND_SPEED]) > 1 ? speeds_unite(path, speeds, a) : STATUS_OK;
+    if (status == STATUS_OK && variable_count(&v[SOUND_SPEED]) > 1 && samples_count(&v[SAMPLES]) > 0)
+        status = speeds_move(a, speeds, pulse ? (int)variable_count(pulse) : 0, pulse ? pulse->values : NULL, NULL,
+                             PRECISION_DOUBLE, v[SAMPLES].values);
+    free(speeds);
+    return status;
 }
 
 /* `pings` NULL: all samples; else none. */
@@ -309,34 +329,28 @@ static enum status file_read(const char *path, const struct pings *pings, struct
     memcpy(wanted, echo_variables, sizeof wanted);
     wanted[SAMPLES].pings = pings;
     enum status status = variables_read(path, wanted, ECHO_VARIABLES, variables);
-    if (status != STATUS_OK) {
+    if (status != STATUS_OK)
         return status;
-    }
     status = check_echo_values(path, variables);
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = shapes_read(variables);
-    }
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = check_echo_shapes(path, variables);
-    }
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = check_samples(path, &variables[SAMPLES]);
-    }
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = check_area(path, variables);
-    }
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = normalise_pulse(path, variables, exponent);
-    }
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = acquisition_fill(path, variables, acquisition);
-    }
+    if (status == STATUS_OK)
+        status = speeds_apply(path, variables, acquisition);
     if (status == STATUS_OK) {
         const double wavelength = acquisition->sound_speed / acquisition->fc;
         status = positions_check(path, echo_variables[TX].name, &variables[TX], wavelength);
-        if (status == STATUS_OK) {
+        if (status == STATUS_OK)
             status = positions_check(path, echo_variables[RX].name, &variables[RX], wavelength);
-        }
     }
     if (status == STATUS_OK) {
         *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values, 0};
@@ -374,16 +388,51 @@ bool echo_file_is_read_whole(const char *path)
     return is_read && memcmp(head, "MATLAB 5.0", sizeof head) == 0;
 }
 
+/* The same of pings that were just read; the file's other variables are as they were when it was opened. */
+static enum status pings_move(const char *path, const struct variable *v, const struct acquisition *a,
+                              const struct pings *pings)
+{
+    const size_t count = (size_t)pings->count, times = variable_count(&v[T0]);
+    const bool raw = scalar_or(&v[COMPRESSED], 0) == 0;
+    struct acquisition whole = *a; /* `a` may be a part of the file's */
+    if (!speeds_fit(&v[SOUND_SPEED], count) || (times != 1 && times != count) || (raw && !v[PULSE].values))
+        return status_set(STATUS_INVALID, "%s: has been replaced meanwhile", path);
+    whole.pings = pings->count;
+    whole.t0 = calloc(count, sizeof *whole.t0);
+    double *speeds = reals_of(&v[SOUND_SPEED]);
+    for (size_t p = 0; p < count && whole.t0; p++)
+        whole.t0[p] = creal(v[T0].values[times == 1 ? 0 : p]);
+    for (size_t k = 0; raw && k < variable_count(&v[PULSE]); k++)
+        v[PULSE].values[k] *= ldexp(1, -pings->exponent);
+    const enum status status =
+        speeds && whole.t0 ? speeds_move(&whole, speeds, raw ? (int)variable_count(&v[PULSE]) : 0,
+                                         raw ? v[PULSE].values : NULL, pings->read, pings->precision, pings->samples)
+                           : status_set(STATUS_FAILED, "%s: no memory for its sound speeds", path);
+    free(speeds);
+    free(whole.t0);
+    return status;
+}
+
 enum status echo_file_read_pings(const char *path, const struct acquisition *a, const struct pings *pings)
 {
-    struct wanted wanted = echo_variables[SAMPLES];
-    struct variable samples;
-    wanted.pings = pings;
-    const enum status status = variables_read(path, &wanted, 1, &samples);
+    static const enum echo_variable needed[] = {SAMPLES, SOUND_SPEED, T0, COMPRESSED, PULSE};
+    enum { NEEDED = sizeof needed / sizeof *needed };
+    struct wanted wanted[NEEDED];
+    struct variable read[NEEDED], v[ECHO_VARIABLES] = {{.values = NULL}};
+    for (int k = 0; k < NEEDED; k++)
+        wanted[k] = echo_variables[needed[k]];
+    wanted[0].pings = pings;
+    enum status status = variables_read(path, wanted, NEEDED, read);
     if (status != STATUS_OK)
         return status;
-    return samples.dims[0] == (size_t)a->samples ? STATUS_OK
-                                                 : status_set(STATUS_INVALID, "%s: has been replaced meanwhile", path);
+    for (int k = 0; k < NEEDED; k++)
+        v[needed[k]] = read[k];
+    if (v[SAMPLES].dims[0] != (size_t)a->samples)
+        status = status_set(STATUS_INVALID, "%s: has been replaced meanwhile", path);
+    else if (variable_count(&v[SOUND_SPEED]) > 1)
+        status = pings_move(path, v, a, pings);
+    variables_free(read, NEEDED);
+    return status;
 }
 
 enum status echo_file_is(const char *path, bool *is)
@@ -394,8 +443,7 @@ enum status echo_file_is(const char *path, bool *is)
     either[0].is_optional = either[1].is_optional = true;
     enum status status = variables_read(path, either, 2, variables);
     *is = status == STATUS_OK && (variables[0].values || variables[1].values);
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         variables_free(variables, 2);
-    }
     return status;
 }
