@@ -308,10 +308,10 @@ static enum status speeds_apply(const char *path, const struct variable *v, stru
 {
     const struct variable *pulse = a->compressed ? NULL : &v[PULSE];
     double *speeds = reals_of(&v[SOUND_SPEED]);
-    if (!speeds)
-        return status_set(STATUS_FAILED, "%s: no memory for its sound speeds", path);
-    enum status status = variable_count(&v[SOUND_SPEED]) > 1 ? speeds_unite(path, speeds, a) : STATUS_OK;
-    if (status == STATUS_OK && variable_count(&v[SOUND_SPEED]) > 1 && samples_count(&v[SAMPLES]) > 0)
+    enum status status = speeds ? speeds_unite(path, speeds, a) : status_set(STATUS_FAILED, "%s: no memory", path);
+    if (status == STATUS_OK)
+        status = acquisition_check(a, path);
+    if (status == STATUS_OK && samples_count(&v[SAMPLES]) > 0)
         status = speeds_move(a, speeds, pulse ? (int)variable_count(pulse) : 0, pulse ? pulse->values : NULL, NULL,
                              PRECISION_DOUBLE, v[SAMPLES].values);
     free(speeds);
@@ -344,7 +344,7 @@ static enum status file_read(const char *path, const struct pings *pings, struct
         status = normalise_pulse(path, variables, exponent);
     if (status == STATUS_OK)
         status = acquisition_fill(path, variables, acquisition);
-    if (status == STATUS_OK)
+    if (status == STATUS_OK && variable_count(&variables[SOUND_SPEED]) > 1)
         status = speeds_apply(path, variables, acquisition);
     if (status == STATUS_OK) {
         const double wavelength = acquisition->sound_speed / acquisition->fc;
