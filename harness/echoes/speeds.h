@@ -11,7 +11,7 @@
 
 #include "contract/algorithm.h"
 
-/* The speeds of a->pings pings, m/s: *a gets their mean, the velocities and the band of moved records; raw echoes become
+/* The speeds of a->pings pings, m/s: *a gets their mean, and velocities and band of moved records; raw echoes become
    compressed ones, without a pulse. Equal speeds change nothing but a->sound_speed. Errors: STATUS_INVALID, naming
    `path`, ping, value and what is accepted. */
 enum status speeds_unite(const char *path, const double *speeds, struct acquisition *a);
