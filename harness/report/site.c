@@ -1,10 +1,12 @@
 /* A results site: its folders, and its files (site.h). */
 #include "report/site.h"
 
+#include <ctype.h>
 #include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "files/folder.h"
 #include "files/text_file.h"
@@ -12,32 +14,78 @@
 
 /* ---- The folders ---- */
 
-/* What a line of the file's head says. Errors: STATUS_INVALID where it is not there, or empty. */
+/* "2026-11-29T01:16:30Z": dates are compared as texts. */
+static bool is_date(const char *text)
+{
+    static const char form[] = "0000-00-00T00:00:00Z";
+    size_t k = 0;
+    while (form[k] && (form[k] == '0' ? isdigit((unsigned char)text[k]) : text[k] == form[k]))
+        k++;
+    return !form[k] && !text[k];
+}
+
+/* What a line of the file's head says: plain, and short enough to be compared whole. */
 static enum status head_read(const struct csv *csv, const char *key, const char **value)
 {
     *value = csv_comment(csv, key);
-    return *value && **value ? STATUS_OK
-                             : status_set(STATUS_INVALID,
-                                          "%s: the line '# %s: ...' is missing; rows of a site say where they are from",
-                                          csv->path, key);
+    if (!*value || !**value)
+        return status_set(STATUS_INVALID, "%s: the line '# %s: ...' is missing; rows of a site say where they are from",
+                          csv->path, key);
+    if (strlen(*value) > HEAD_MOST)
+        return status_set(STATUS_INVALID, "%s: the line '# %s: ...' has %zu characters; at most %d are accepted",
+                          csv->path, key, strlen(*value), HEAD_MOST);
+    if (strcmp(key, "date") == 0 && !is_date(*value))
+        return status_set(STATUS_INVALID, "%s: the date is '%s'; one like 2026-11-29T01:16:30Z is needed", csv->path,
+                          *value);
+    return STATUS_OK;
 }
 
 /* Quartiles lie on both sides of the median, the shortest run below, and a gain cannot make the error larger. */
 static enum status rows_check(const struct results *results)
 {
     static const double DIGITS = 1e-6; /* relative: numbers of the file are rounded */
+    const char *threads = csv_comment(&results->csv, "threads");
     for (int k = 0; k < results->csv.row_count; k++) {
         const struct measurement *row = &results->measurements[k];
-        const double most = row->run_s * (1 + DIGITS);
-        const char *fault = row->run_min_s > most                       ? "run_min_s is above run_s"
-                            : row->run_q1_s > most                      ? "run_q1_s is above run_s"
-                            : row->run_q3_s < row->run_s * (1 - DIGITS) ? "run_q3_s is below run_s"
-                            : row->error_gain > row->error * (1 + DIGITS) + DIGITS * DIGITS
-                                ? "error_gain, after the best gain, is above error"
-                                : NULL;
-        if (fault)
-            return status_set(STATUS_INVALID, "%s:%d: %s of %s: %s; a row is as `run` wrote it", results->csv.path,
-                              results->csv.lines[k], row->scene, row->algorithm, fault);
+        const struct {
+            const char *name, *of;
+            double value, most;
+        } pairs[] = {{"run_min_s", "run_s", row->run_min_s, row->run_s},
+                     {"run_q1_s", "run_s", row->run_q1_s, row->run_s},
+                     {"run_s", "run_q3_s", row->run_s, row->run_q3_s},
+                     {"error_gain", "error", row->error_gain, row->error},
+                     {"threads", "that of the head", row->threads, threads ? atoi(threads) : 0}};
+        for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++)
+            if (pairs[n].value > pairs[n].most * (1 + DIGITS) + DIGITS * DIGITS)
+                return status_set(STATUS_INVALID,
+                                  "%s:%d: %s of %s by %s is %.9g; at most %s, %.9g, is accepted: rows are as `run` "
+                                  "wrote them",
+                                  results->csv.path, results->csv.lines[k], pairs[n].name, row->scene, row->algorithm,
+                                  pairs[n].value, pairs[n].of, pairs[n].most);
+    }
+    return STATUS_OK;
+}
+
+/* The value of a line of the head, "scene NAME: HASH" or "algorithm NAME: ORIGIN"; NULL for others. */
+static const char *content_value(const char *comment)
+{
+    const bool is_content = strncmp(comment, "scene ", 6) == 0 || strncmp(comment, "algorithm ", 10) == 0;
+    return is_content ? strrchr(comment, ':') : NULL;
+}
+
+/* A name stands for one scene, or one algorithm from outside, in both. */
+static enum status contents_compare(const struct csv *a, const struct csv *b)
+{
+    for (int i = 0; i < a->comment_count; i++) {
+        const char *one = content_value(a->comments[i]);
+        const size_t length = one ? (size_t)(one - a->comments[i]) : 0;
+        for (int k = 0; k < b->comment_count && one; k++) {
+            const char *other = content_value(b->comments[k]);
+            if (other && (size_t)(other - b->comments[k]) == length
+                && strncmp(a->comments[i], b->comments[k], length) == 0 && strcmp(one, other) != 0)
+                return status_set(STATUS_INVALID, "%s has '%s', %s has '%s'; one content is accepted for a name",
+                                  a->path, a->comments[i], b->path, b->comments[k]);
+        }
     }
     return STATUS_OK;
 }
@@ -55,7 +103,7 @@ static enum status kind_find(struct site *site, struct submission *submission)
         return status;
     submission->commit = values[3];
     submission->date = values[4];
-    snprintf(name, sizeof name, "%.200s, %.40s, %.40s %s", values[0], values[1], values[2],
+    snprintf(name, sizeof name, "%s, %s, %s %s", values[0], values[1], values[2],
              strcmp(values[2], "1") == 0 ? "thread" : "threads");
     for (int k = 0; k < site->kind_count; k++)
         if (strcmp(site->kinds[k].name, name) == 0) {
@@ -80,11 +128,20 @@ bool site_is_cell(const struct measurement *a, const struct measurement *b)
            && strcmp(a->options, b->options) == 0 && strcmp(a->precision, b->precision) == 0;
 }
 
-/* Add the rows of cells that no newer folder has. */
+/* The place of a cell among the newest rows; behind them: there is none. */
+static int cell_find(const struct kind *kind, const struct measurement *row)
+{
+    int n = 0;
+    while (n < kind->newest.csv.row_count && !site_is_cell(&kind->newest.measurements[n], row))
+        n++;
+    return n;
+}
+
+/* Add the rows of cells that no newer folder has measured. */
 static enum status rows_add(struct kind *kind, const struct submission *submission)
 {
-    const int rows = submission->results.csv.row_count, before = kind->newest.csv.row_count;
-    const size_t room = (size_t)before + (size_t)rows + 1;
+    const int rows = submission->results.csv.row_count;
+    const size_t room = (size_t)kind->newest.csv.row_count + (size_t)rows + 1;
     struct measurement *list = realloc(kind->newest.measurements, room * sizeof *list);
     if (list)
         kind->newest.measurements = list;
@@ -94,13 +151,17 @@ static enum status rows_add(struct kind *kind, const struct submission *submissi
     kind->from = from;
     for (int k = 0; k < rows; k++) {
         const struct measurement *row = &submission->results.measurements[k];
-        int n = 0;
-        while (n < before && !site_is_cell(&list[n], row))
-            n++;
-        if (n < before)
+        const int n = cell_find(kind, row);
+        const bool is_new = n == kind->newest.csv.row_count;
+        if (!is_new && from[n].submission == submission)
+            return status_set(STATUS_INVALID, "%s:%d: a second row of %s by %s; one is accepted",
+                              submission->results.csv.path, submission->results.csv.lines[k], row->scene,
+                              row->algorithm);
+        if (!is_new && (strcmp(list[n].status, "failed") != 0 || strcmp(row->status, "failed") == 0))
             continue;
-        from[kind->newest.csv.row_count] = (struct origin){submission, k};
-        list[kind->newest.csv.row_count++] = *row;
+        from[n] = (struct origin){submission, k};
+        list[n] = *row;
+        kind->newest.csv.row_count += is_new;
     }
     return STATUS_OK;
 }
@@ -147,6 +208,8 @@ enum status site_read(int count, const char *const *folders, struct site *site)
             status = rows_check(&submission->results);
         if (status == STATUS_OK)
             status = kind_find(site, submission);
+        for (int n = 0; n < k && status == STATUS_OK; n++)
+            status = contents_compare(&site->submissions[n].results.csv, &submission->results.csv);
     }
     if (status != STATUS_OK)
         return status;
@@ -171,15 +234,26 @@ void site_free(struct site *site)
 
 /* ---- The files ---- */
 
-static bool is_page(const char *name)
+/* The number of a scene's page, from 1; 0 for other names. */
+static int page_number(const char *name)
 {
-    const size_t length = strspn(name + (strncmp(name, "scene-", 6) == 0 ? 6 : 0), "0123456789");
-    return strcmp(name, "index.html") == 0
-           || (strncmp(name, "scene-", 6) == 0 && length > 0 && strcmp(name + 6 + length, ".html") == 0);
+    int number = 0, length = 0;
+    return sscanf(name, "scene-%9d.html%n", &number, &length) == 1 && length > 0 && !name[length] ? number : 0;
 }
 
-/* Nothing but an older site is in the folder; its pages are removed where `clear`. */
-static enum status out_clear(const char *out, bool clear)
+/* Is it a site's index: by its title? */
+static bool is_index(const char *path)
+{
+    char head[1000] = "";
+    const int descriptor = place_read(path, 0);
+    const ssize_t got = descriptor >= 0 ? read(descriptor, head, sizeof head - 1) : 0;
+    if (descriptor >= 0)
+        close(descriptor);
+    return got > 0 && strstr(head, "<title>" SITE_TITLE "</title>");
+}
+
+/* The folder is empty, or an older site: whose pages above `scenes` are removed where that is not negative. */
+static enum status out_check(const char *out, int scenes)
 {
     char path[4500];
     enum status status = STATUS_OK;
@@ -187,13 +261,14 @@ static enum status out_clear(const char *out, bool clear)
     if (!folder)
         return status_set(STATUS_INVALID, "%s: cannot be read", out);
     for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));) {
+        const int number = page_number(entry->d_name);
+        snprintf(path, sizeof path, "%.4096s/%s", out, entry->d_name);
         if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
             continue;
-        snprintf(path, sizeof path, "%.4096s/%s", out, entry->d_name);
-        if (!is_page(entry->d_name))
+        if (number == 0 && (strcmp(entry->d_name, "index.html") != 0 || !is_index(path)))
             status = status_set(STATUS_INVALID,
                                 "%s is no page of a results site; a new folder, or an older site, is accepted", path);
-        else if (clear)
+        else if (scenes >= 0 && number > scenes)
             place_clear(path);
     }
     closedir(folder);
@@ -227,13 +302,13 @@ enum status site_write(int count, const char *const *folders, const char *out)
     if (status == STATUS_OK)
         status = folder_take(out, &lock);
     if (status == STATUS_OK)
-        status = out_clear(out, false);
-    if (status == STATUS_OK)
-        status = out_clear(out, true);
+        status = out_check(out, -1);
     for (int s = 0; s < site.scene_count && status == STATUS_OK; s++)
         status = page_write(&site, s, out);
     if (status == STATUS_OK)
         status = page_write(&site, -1, out);
+    if (status == STATUS_OK)
+        status = out_check(out, site.scene_count);
     folder_leave(lock);
     site_free(&site);
     return status;

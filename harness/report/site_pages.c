@@ -92,7 +92,7 @@ static enum status ranking_show(struct page *page, const struct kind *kind)
 enum status site_index_show(struct page *page, const struct site *site)
 {
     enum status status = STATUS_OK;
-    page_begin(page, "sasbench: results of several machines");
+    page_begin(page, SITE_TITLE);
     page_paragraph(page,
                    "The fastest setting on each scene, for each power of ten of relative error. Times are compared on "
                    "one kind of machine alone. A scene's page has its fronts, the commands that measure them again, "
@@ -204,6 +204,14 @@ static void history_show(struct page *page, const struct site *site, int kind, c
         page_table_end(page);
 }
 
+static bool kind_has(const struct kind *kind, const char *scene)
+{
+    for (int k = 0; k < kind->newest.csv.row_count; k++)
+        if (strcmp(kind->newest.measurements[k].scene, scene) == 0)
+            return true;
+    return false;
+}
+
 enum status site_scene_show(struct page *page, const struct site *site, const char *scene)
 {
     struct families families;
@@ -214,17 +222,20 @@ enum status site_scene_show(struct page *page, const struct site *site, const ch
     page_file(page, "index.html", "All scenes");
     fputs("</nav>\n", page->stream);
     for (int k = 0; k < site->kind_count && status == STATUS_OK; k++) {
-        struct points points;
-        status = points_find(&site->kinds[k].newest, scene, &points);
-        if (status == STATUS_OK && points.count > 0) {
-            section_begin(page, &site->kinds[k]);
+        const struct kind *kind = &site->kinds[k];
+        struct points points = {.scene = NULL};
+        if (!kind_has(kind, scene))
+            continue;
+        section_begin(page, kind);
+        status = points_find(&kind->newest, scene, &points);
+        if (status == STATUS_OK && points.count > 0)
             status = report_front_show(page, &families, &points);
-            history_show(page, site, k, scene);
-            rows_show(page, &site->kinds[k], scene);
-            fputs("</section>\n", page->stream);
-        }
-        if (status == STATUS_OK)
-            points_free(&points);
+        else if (status == STATUS_OK)
+            page_paragraph(page, "No image was measured: the rows say why.");
+        history_show(page, site, k, scene);
+        rows_show(page, kind, scene);
+        fputs("</section>\n", page->stream);
+        points_free(&points);
     }
     end(page);
     return status;

@@ -7,6 +7,9 @@
 #include "report/page.h"
 #include "results/results.h"
 
+#define SITE_TITLE "sasbench: results of several machines"
+enum { HEAD_MOST = 120 }; /* characters of a value in a file's head */
+
 /* A results folder. Texts belong to its file. */
 struct submission {
     const char *directory, *date, *commit;

@@ -36,6 +36,12 @@ if command -v xmllint >/dev/null; then
     for page in out/*.html; do sed '/<script>/,/<\/script>/d; 1d' "$page" | xmllint --noout - || fail "$page is not strict"; done
 fi
 
+# A failed row in the newest folder does not hide an older one that was measured.
+edited broken 's/^\(study.quick,bp_nearest,[^,]*,[^,]*,[^,]*,[^,]*\),ok,/\1,failed,/; s/^# date: .*/# date: 2099-01-01T00:00:00Z/'
+grep -q ',failed,' broken/measurements.csv || fail 'no row failed'
+"$program" report --site new broken -o mended >/dev/null
+sections mended/scene-1.html | grep -q '>bp_nearest<' || fail 'a failed row hides a measured one'
+
 # An older site is replaced; another folder is not touched.
 touch out/scene-7.html
 "$program" report --site old -o out >/dev/null
@@ -57,6 +63,10 @@ echo kept >theirs/notes.txt
 refused 'theirs/notes.txt is no page of a results site' --site new -o theirs
 [ "$(cat theirs/notes.txt)" = kept ] && [ ! -e theirs/index.html ] || fail 'a folder of others was written into'
 ln -s theirs link
+mkdir page
+echo '<title>mine</title>' >page/index.html
+refused 'page/index.html is no page of a results site' --site new -o page
+grep -q mine page/index.html || fail 'a page of others was replaced'
 refused 'notes.txt' --site new -o link
 refused '-o OUT is missing' --site new
 refused 'goes with --site' new -o out
@@ -67,5 +77,16 @@ mkdir faulty # quoted fields have commas
 sed 's/"[^"]*"/quoted/g' new/measurements.csv |
     awk -F, -v OFS=, '/^scene,/ { for (k = 1; k <= NF; k++) at[$k] = k } /bp_nearest/ { $at["run_min_s"] = 7 } { print }' \
         >faulty/measurements.csv
-refused 'faulty/measurements.csv:[0-9]*: study/quick of bp_nearest: run_min_s is above run_s' --site new faulty -o out
+refused 'faulty/measurements.csv:[0-9]*: run_min_s of study/quick by bp_nearest is 7; at most run_s' --site new faulty -o out
+edited undated 's/^# date: .*/# date: zzzz/'
+refused "the date is 'zzzz'" --site undated -o out
+edited changed 's/^# scene study.quick: .*/# scene study\/quick: 0123456789abcdef/'
+refused 'one content is accepted for a name' --site new changed -o out
+edited single 's/^# threads: .*/# threads: 0/'
+refused 'threads of study/quick by bp_[a-z]* is 1; at most that of the head, 0' --site single -o out
+mkdir double
+{ cat new/measurements.csv; grep '^study/quick,bp_nearest' new/measurements.csv; } >double/measurements.csv
+refused 'a second row of study/quick by bp_nearest' --site double -o out
+edited long "s/^# machine: .*/# machine: $(printf '%0200d' 7)/"
+refused "'# machine: ...' has 200 characters" --site long -o out
 grep -q '0123456789ab' out/index.html || fail 'a refusal changed the site'
