@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "contract/algorithm.h"
@@ -34,9 +35,25 @@ static double rounded(double value)
     return floor(value / unit) * unit;
 }
 
-static void axis_make(double low, double high, double resolution, double *first, double *step, int *count, bool *cut)
+/* The step, or up to a third less: a whole part of the ping spacing, on which back projection is fastest. It must print
+   exactly. */
+static double part_of(double spacing, double step)
 {
-    *step = rounded(resolution / 2);
+    char text[32];
+    for (double parts = ceil(spacing / step); parts <= 1.5 * spacing / step; parts++) {
+        snprintf(text, sizeof text, "%.5g", spacing / parts);
+        const double printed = strtod(text, NULL);
+        if (fabs(printed * parts - spacing) <= 1e-9 * spacing)
+            return printed;
+    }
+    return step;
+}
+
+/* `spacing` of pings along it; 0: none. */
+static void axis_make(double low, double high, double resolution, double spacing, double *first, double *step,
+                      int *count, bool *cut)
+{
+    *step = part_of(spacing, rounded(resolution / 2));
     double pixels = floor((high - low) / *step) + 1;
     *cut |= pixels > PIXELS_MOST;
     *count = (int)fmin(fmax(pixels, 1), PIXELS_MOST);
@@ -76,7 +93,7 @@ static void resolutions_lower(const struct acquisition *a, const struct grid *gr
 static bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
 {
     struct straight_track track;
-    double nearest, farthest, x_low, x_high, r_low, r_high;
+    double nearest, farthest, x_low, x_high, r_low, r_high, spacing = 0;
     const double range_resolution = a->sound_speed / (2 * a->bandwidth);
     *cut = false;
     *grid = (struct grid){0};
@@ -91,6 +108,7 @@ static bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *c
     }
     if (acquisition_is_straight(a, &track)) {
         const double last = track.x_first + (a->pings - 1) * track.spacing;
+        spacing = fabs(track.spacing);
         x_low = fmin(track.x_first, last) + condition_offset(a, 0) / 2 + ahead;
         x_high = fmax(track.x_first, last) + condition_offset(a, 2) / 2 + ahead;
         r_low = fmax(nearest, range_resolution);
@@ -112,8 +130,8 @@ static bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *c
     }
     for (int round = 0; round < 2; round++) {
         *cut = false;
-        axis_make(x_low, x_high, resolution_x, &grid->x_first, &grid->x_step, &grid->x_count, cut);
-        axis_make(r_low, r_high, resolution_r, &grid->r_first, &grid->r_step, &grid->r_count, cut);
+        axis_make(x_low, x_high, resolution_x, spacing, &grid->x_first, &grid->x_step, &grid->x_count, cut);
+        axis_make(r_low, r_high, resolution_r, 0, &grid->r_first, &grid->r_step, &grid->r_count, cut);
         if (grid_check(grid, "grid") != STATUS_OK || grid_meets_records(a, 1, grid, "grid") != STATUS_OK)
             return false;
         if (round == 0)
