@@ -62,7 +62,7 @@ static void help_list_and_info_tell_everything(void **state)
         assert_null(strstr(text, "simulate"));
         free(text);
     }
-    static const char *const facts[] = {"sasbench " SASBENCH_VERSION, "commit ", "compiler: ", "libraries: fftw",
+    static const char *const facts[] = {("sasbench " SASBENCH_VERSION), "commit ", "compiler: ", "libraries: fftw",
                                         "instruction set: "};
     char *version = program_output((const char *const[ARGUMENTS_MAX]){"--version"});
     for (size_t n = 0; n < COUNT_OF(facts); n++)
