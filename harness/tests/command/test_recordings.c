@@ -200,7 +200,7 @@ static void files_are_told_and_shown(void **state)
     free(line);
     line = program_output(about);
     assert_holds(line, "seen.mat: an image of good.mat by bp_sinc:taps=8,window=none");
-    assert_holds(line, "\n  engine general, fc 150000 Hz, sound speed 1500 m/s\n  of the scene's content ");
+    assert_holds(line, "\n  engine invariant, fc 150000 Hz, sound speed 1500 m/s\n  of the scene's content ");
     assert_holds(line, ", by commit ");
     assert_holds(line, ", on 20");
     assert_non_null(strstr(line, "peak "));
