@@ -248,7 +248,9 @@ char *support_read(const char *name)
 int support_shell(const char *lines)
 {
     char command[3000];
-    snprintf(command, sizeof command, "cd '%s' && { %s\n} >>out 2>>err", folder, lines);
+    snprintf(command, sizeof command, "cd \"$TEST_FOLDER\" && { %s\n} >>out 2>>err", lines);
+    if (setenv("ROOT", SASBENCH_ROOT, 1) != 0 || setenv("TEST_FOLDER", folder, 1) != 0)
+        return -1;
     const int status = system(command);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

@@ -165,7 +165,7 @@ static void assert_adapter(const char *check, const char *command)
         print_message("[  SKIPPED ] %s: not there\n", check);
         skip();
     }
-    assert_shell("cp '" SASBENCH_ROOT "'/docs/plugin/* .", 0);
+    assert_shell("cp \"$ROOT\"/docs/plugin/* .", 0);
     snprintf(specs, sizeof specs, "-a '%s' -a bp_sinc", command);
     specs_run("", specs, "adapter");
     specs_run("--shard 2/2", specs, "shard");

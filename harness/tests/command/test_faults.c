@@ -367,8 +367,6 @@ static void scenes_without_pairs_are_refused(void **state)
 
 int main(void)
 {
-    if (setenv("ROOT", SASBENCH_ROOT, 1) != 0)
-        return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(folders_belong_to_one_program, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(programs_at_once_lose_no_row, folder_make, folder_remove),

@@ -217,8 +217,6 @@ static int links_make(void **state)
 
 int main(void)
 {
-    if (setenv("ROOT", SASBENCH_ROOT, 1) != 0)
-        return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(taken_folders_are_held, links_make, folder_remove),
         cmocka_unit_test_setup_teardown(places_that_are_none, links_make, folder_remove),

@@ -15,7 +15,7 @@ static int plugin_make(void **state)
         "build=$(dirname \"$SASBENCH_PROGRAM\")/..\n"
         "meson install -C \"$build\" --no-rebuild --destdir \"$PWD/installed\" >&2\n"
         "mv installed/usr/local/include include\n"
-        "cp '" SASBENCH_ROOT "'/docs/plugin/* .\n"
+        "cp \"$ROOT\"/docs/plugin/* .\n"
         "CPATH=$PWD/include meson setup built >&2 && CPATH=$PWD/include ninja -C built >&2 && cp built/mine.so .\n"
         "printf '%s\\n' '#!/bin/sh' 'name=$1; shift' "
         "'exec cc -std=gnu17 -O1 -fopenmp -Wall -Wextra -Werror -shared -fPIC -Iinclude -o \"$name.so\" \"$@\" -lm'"
