@@ -40,7 +40,8 @@ static double rounded(double value)
 static double part_of(double spacing, double step)
 {
     char text[32];
-    for (double parts = ceil(spacing / step); parts <= 1.5 * spacing / step; parts++) {
+    const double most = fmin(1.5 * spacing / step, PIXELS_MOST);
+    for (double parts = fmax(ceil(spacing / step), 1); parts <= most; parts++) {
         snprintf(text, sizeof text, "%.5g", spacing / parts);
         const double printed = strtod(text, NULL);
         if (fabs(printed * parts - spacing) <= 1e-9 * spacing)
