@@ -164,7 +164,11 @@ def gallery(site, many):
 def main():
     site = Site(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
     site.folder('algorithms')
-    names = [name for name in STEPS if name not in ('auto', 'monostatic')]
+    listed = [line.split()[0] for line in site.prints('list').split('\n') if line and line[0] != ' ']
+    missing = [name for name in listed if name not in STEPS]
+    if missing:
+        sys.exit(f'docs/pages.py: STEPS has no {", ".join(missing)}')
+    names = [name for name in listed if name not in ('auto', 'monostatic')]
     many = pictures_of(site, MANY, [name for name in names if not name.startswith('wk_')])
     one = pictures_of(site, ONE, [name for name in names if name.startswith('wk_')])
     for name in STEPS:

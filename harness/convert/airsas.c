@@ -1,8 +1,8 @@
 /* AirSAS (Penn State's synthetic aperture sonar in air): HDF5 with real passband samples, and two tables beside it.
 
    Sample n of a ping lies at (n - group delay)/fs. Its spectrum about the chirp's middle becomes baseband; the chirp
-   becomes the pulse. The sound speed follows the temperature of each ping;
-   where it varies, echoes are compressed and move to the mean (speeds.h). */
+   becomes the pulse. The sound speed follows the temperature of each ping; where it varies, echoes are compressed and
+   move to the mean (speeds.h). */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>

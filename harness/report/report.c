@@ -170,8 +170,7 @@ static enum status folder_show(struct page *page, const struct folder *folder)
     if (any_points(folder)) {
         report_overview_show(page, folder->points, folder->scene_count);
         status = report_fronts_show(page, folder->points, folder->scene_count);
-        page_heading(page, 2, "fastest", "The fastest for each power of ten of error");
-        report_cheapest_show(page, &folder->results, folder->points, folder->scene_count);
+        report_cheapest_show(page, "fastest", &folder->results, folder->points, folder->scene_count);
     }
     report_warnings_show(page, &folder->results);
     for (int k = 0; k < REPORT_TABLES; k++)

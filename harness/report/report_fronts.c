@@ -181,7 +181,7 @@ static void fastest_text(const struct points *points, const struct measurement *
         text_append(text, size, ", %s", cell_significant(row->control_s / row->run_s, "x").text);
 }
 
-void report_cheapest_show(struct page *page, const struct results *results, const struct points *points,
+void report_cheapest_show(struct page *page, const char *id, const struct results *results, const struct points *points,
                           int scene_count)
 {
     enum { DECADES_MOST = 7 };
@@ -200,6 +200,8 @@ void report_cheapest_show(struct page *page, const struct results *results, cons
     }
     if (count == 0)
         return;
+    if (id)
+        page_heading(page, 2, id, "The fastest for each power of ten of error");
     page_table_begin(page, count + 1, columns);
     for (int s = 0; s < scene_count; s++) {
         char texts[DECADES_MOST][700];

@@ -19,8 +19,9 @@ struct families;
 enum status report_front_show(struct page *page, const struct families *families, const struct points *points);
 /* The same for each scene. */
 enum status report_fronts_show(struct page *page, const struct points *points, int scene_count);
-/* A row for each scene, a column for each power of ten of error that any setting reaches. */
-void report_cheapest_show(struct page *page, const struct results *results, const struct points *points,
+/* A row for each scene, a column for each power of ten of error that any setting reaches. `id`: of its heading; NULL:
+   without one. */
+void report_cheapest_show(struct page *page, const char *id, const struct results *results, const struct points *points,
                           int scene_count);
 
 /* Each warning of a scene once, with its images; nothing without warnings. */

@@ -3,7 +3,6 @@
 
 #include <ctype.h>
 #include <dirent.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -44,7 +43,7 @@ static enum status head_read(const struct csv *csv, const char *key, const char 
 static enum status rows_check(const struct results *results)
 {
     static const double DIGITS = 1e-6; /* relative: numbers of the file are rounded */
-    const char *threads = csv_comment(&results->csv, "threads");
+    char threads[16];
     for (int k = 0; k < results->csv.row_count; k++) {
         const struct measurement *row = &results->measurements[k];
         const struct {
@@ -53,8 +52,7 @@ static enum status rows_check(const struct results *results)
         } pairs[] = {{"run_min_s", "run_s", row->run_min_s, row->run_s},
                      {"run_q1_s", "run_s", row->run_q1_s, row->run_s},
                      {"run_s", "run_q3_s", row->run_s, row->run_q3_s},
-                     {"error_gain", "error", row->error_gain, row->error},
-                     {"threads", "that of the head", row->threads, threads ? atoi(threads) : 0}};
+                     {"error_gain", "error", row->error_gain, row->error}};
         for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++)
             if (pairs[n].value > pairs[n].most * (1 + DIGITS) + DIGITS * DIGITS)
                 return status_set(STATUS_INVALID,
@@ -62,30 +60,23 @@ static enum status rows_check(const struct results *results)
                                   "wrote them",
                                   results->csv.path, results->csv.lines[k], pairs[n].name, row->scene, row->algorithm,
                                   pairs[n].value, pairs[n].of, pairs[n].most);
+        snprintf(threads, sizeof threads, "%d", row->threads);
+        if (row->threads >= 0 && strcmp(threads, csv_comment(&results->csv, "threads")) != 0)
+            return status_set(STATUS_INVALID, "%s:%d: %s of %s has %s threads, the head %s; the same are needed",
+                              results->csv.path, results->csv.lines[k], row->algorithm, row->scene, threads,
+                              csv_comment(&results->csv, "threads"));
     }
     return STATUS_OK;
-}
-
-/* The value of a line of the head, "scene NAME: HASH" or "algorithm NAME: ORIGIN"; NULL for others. */
-static const char *content_value(const char *comment)
-{
-    const bool is_content = strncmp(comment, "scene ", 6) == 0 || strncmp(comment, "algorithm ", 10) == 0;
-    return is_content ? strrchr(comment, ':') : NULL;
 }
 
 /* A name stands for one scene, or one algorithm from outside, in both. */
 static enum status contents_compare(const struct csv *a, const struct csv *b)
 {
-    for (int i = 0; i < a->comment_count; i++) {
-        const char *one = content_value(a->comments[i]);
-        const size_t length = one ? (size_t)(one - a->comments[i]) : 0;
-        for (int k = 0; k < b->comment_count && one; k++) {
-            const char *other = content_value(b->comments[k]);
-            if (other && (size_t)(other - b->comments[k]) == length
-                && strncmp(a->comments[i], b->comments[k], length) == 0 && strcmp(one, other) != 0)
-                return status_set(STATUS_INVALID, "%s has '%s', %s has '%s'; one content is accepted for a name",
-                                  a->path, a->comments[i], b->path, b->comments[k]);
-        }
+    for (int k = 0; k < a->comment_count; k++) {
+        const char *one = a->comments[k], *other = comment_names_content(one) ? comment_like(b, one) : NULL;
+        if (other && strcmp(one, other) != 0)
+            return status_set(STATUS_INVALID, "%s has '%s', %s has '%s'; one content is accepted for a name", a->path,
+                              one, b->path, other);
     }
     return STATUS_OK;
 }
@@ -205,9 +196,9 @@ enum status site_read(int count, const char *const *folders, struct site *site)
         snprintf(path, sizeof path, "%.4096s/measurements.csv", folders[k]);
         status = results_read(path, &submission->results);
         if (status == STATUS_OK)
-            status = rows_check(&submission->results);
-        if (status == STATUS_OK)
             status = kind_find(site, submission);
+        if (status == STATUS_OK)
+            status = rows_check(&submission->results);
         for (int n = 0; n < k && status == STATUS_OK; n++)
             status = contents_compare(&site->submissions[n].results.csv, &submission->results.csv);
     }

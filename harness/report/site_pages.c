@@ -81,7 +81,7 @@ static enum status ranking_show(struct page *page, const struct kind *kind)
     for (int s = 0; s < count && status == STATUS_OK; s++)
         status = points_find(&kind->newest, scenes[s], &points[s]);
     if (status == STATUS_OK)
-        report_cheapest_show(page, &kind->newest, points, count);
+        report_cheapest_show(page, NULL, &kind->newest, points, count);
     for (int s = 0; s < count && points; s++)
         points_free(&points[s]);
     free(points);

@@ -12,6 +12,7 @@
 #include "files/csv.h"
 #include "files/folder.h"
 #include "files/text_file.h"
+#include "results/results.h"
 
 /* Targets are written ahead of their measurements: a cut between the two leaves rows that the next run drops. */
 static const struct {
@@ -78,36 +79,13 @@ static void merger_free(struct merger *merger)
 
 /* ---- what the files are from ---- */
 
-/* "scene NAME: HASH", "algorithm NAME: ORIGIN": of some rows. */
-static bool names_content(const char *comment)
-{
-    return strncmp(comment, "scene ", strlen("scene ")) == 0
-           || strncmp(comment, "algorithm ", strlen("algorithm ")) == 0;
-}
-
-/* The length of "key" in "key: value"; a name may hold anything. */
-static size_t key_length(const char *comment)
-{
-    const char *end = names_content(comment) ? strrchr(comment, ':') : strchr(comment, ':');
-    return end ? (size_t)(end - comment) : strlen(comment);
-}
-
-static const char *comment_like(const struct csv *csv, const char *comment)
-{
-    const size_t length = key_length(comment);
-    for (int k = 0; k < csv->comment_count; k++)
-        if (key_length(csv->comments[k]) == length && strncmp(csv->comments[k], comment, length) == 0)
-            return csv->comments[k];
-    return NULL;
-}
-
 /* May it differ between folders that are merged? */
 static bool comment_is_free(const char *comment)
 {
     static const char *const keys[] = {"date", "machine", "isa"}; /* each kind of machine has a folder */
     bool is_free = false;
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
-        is_free |= key_length(comment) == strlen(keys[k]) && strncmp(comment, keys[k], strlen(keys[k])) == 0;
+        is_free |= comment_key_length(comment) == strlen(keys[k]) && strncmp(comment, keys[k], strlen(keys[k])) == 0;
     return is_free;
 }
 
@@ -115,7 +93,7 @@ static enum status comments_check(const struct csv *csv, const struct csv *first
 {
     for (int k = 0; k < first->comment_count; k++) {
         const char *wanted = first->comments[k], *found = comment_like(csv, wanted);
-        if (comment_is_free(wanted) || (found ? strcmp(found, wanted) == 0 : names_content(wanted)))
+        if (comment_is_free(wanted) || (found ? strcmp(found, wanted) == 0 : comment_names_content(wanted)))
             continue;
         return status_set(STATUS_INVALID,
                           "%s: has '# %.200s', must be '# %.200s' as in %s; other results are not merged", csv->path,

@@ -119,3 +119,26 @@ enum status measurements_write(const char *path, const char *note, const struct 
         row_write(text.stream, row_kinds[KIND_MEASUREMENTS].columns, &rows[k]);
     return text_file_close(&text, STATUS_OK);
 }
+
+/* ---- Lines of the head ---- */
+
+bool comment_names_content(const char *comment)
+{
+    return strncmp(comment, "scene ", strlen("scene ")) == 0
+           || strncmp(comment, "algorithm ", strlen("algorithm ")) == 0;
+}
+
+size_t comment_key_length(const char *comment)
+{
+    const char *end = comment_names_content(comment) ? strrchr(comment, ':') : strchr(comment, ':');
+    return end ? (size_t)(end - comment) : strlen(comment);
+}
+
+const char *comment_like(const struct csv *csv, const char *comment)
+{
+    const size_t length = comment_key_length(comment);
+    for (int k = 0; k < csv->comment_count; k++)
+        if (comment_key_length(csv->comments[k]) == length && strncmp(csv->comments[k], comment, length) == 0)
+            return csv->comments[k];
+    return NULL;
+}

@@ -18,6 +18,13 @@ struct content {
 };
 struct content content_scene(char *name, uint64_t hash);
 
+/* Lines of a file's head, as csv.h has them. Is one of a content, "scene NAME: HASH" or "algorithm NAME: ORIGIN"? The
+   length of "key" in "key: value"; a content's name may hold anything. The line of a file with the same key; NULL
+   without one. */
+bool comment_names_content(const char *comment);
+size_t comment_key_length(const char *comment);
+const char *comment_like(const struct csv *csv, const char *comment);
+
 /* A finished file, measurements.csv, targets.csv or a baseline, in memory; freed with results_free, which accepts a
    zeroed struct. Texts of the rows belong to the csv. */
 struct results {
