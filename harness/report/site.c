@@ -144,10 +144,10 @@ static enum status rows_add(struct kind *kind, const struct submission *submissi
         const struct measurement *row = &submission->results.measurements[k];
         const int n = cell_find(kind, row);
         const bool is_new = n == kind->newest.csv.row_count;
-        if (!is_new && from[n].submission == submission)
-            return status_set(STATUS_INVALID, "%s:%d: a second row of %s by %s; one is accepted",
-                              submission->results.csv.path, submission->results.csv.lines[k], row->scene,
-                              row->algorithm);
+        if (!is_new && strcmp(from[n].submission->date, submission->date) == 0)
+            return status_set(STATUS_INVALID, "%s:%d: %s has a row of %s by %s of the same date; one is accepted",
+                              submission->results.csv.path, submission->results.csv.lines[k],
+                              from[n].submission->results.csv.path, row->scene, row->algorithm);
         if (!is_new && (strcmp(list[n].status, "failed") != 0 || strcmp(row->status, "failed") == 0))
             continue;
         from[n] = (struct origin){submission, k};

@@ -86,7 +86,8 @@ edited single 's/^# threads: .*/# threads: 0/'
 refused 'of study/quick has 1 threads, the head 0' --site single -o out
 mkdir double
 { cat new/measurements.csv; grep '^study/quick,bp_nearest' new/measurements.csv; } >double/measurements.csv
-refused 'a second row of study/quick by bp_nearest' --site double -o out
+refused 'double/measurements.csv has a row of study/quick by bp_nearest of the same date' --site double -o out
+refused 'of the same date; one is accepted' --site new new -o out
 edited long "s/^# machine: .*/# machine: $(printf '%0200d' 7)/"
 refused "'# machine: ...' has 200 characters" --site long -o out
 grep -q '0123456789ab' out/index.html || fail 'a refusal changed the site'
