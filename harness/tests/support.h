@@ -59,7 +59,7 @@ char *support_read(const char *name); /* the whole file, malloc'ed; NULL if it i
 /* The text of a page of ours, tables as lines of |cell|cell|, or NULL; to be freed. */
 char *support_read_cells(const char *path);
 
-/* Lines of the shell, in the test's folder; $ROOT is the source's. What they say is added to the files out and err there.
+/* Lines of the shell, in the test's folder; $ROOT is the source's. What they say is added to the files out and err.
    Returns the exit status, -1 for a signal. */
 int support_shell(const char *lines);
 /* The same; the test fails on any other status than the wanted one. */
