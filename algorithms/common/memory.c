@@ -75,6 +75,14 @@ void *memory_columns(size_t alignment, size_t bytes)
     return memory;
 }
 
+void memory_clear(void *memory, size_t bytes)
+{
+    const size_t step = 1 << 22;
+#pragma omp parallel for if (bytes > step)
+    for (size_t at = 0; at < bytes; at += step)
+        memset((char *)memory + at, 0, bytes - at < step ? bytes - at : step);
+}
+
 /* A page ahead of the memory stores its size. */
 void *memory_sparse(size_t bytes, bool huge)
 {
@@ -137,7 +145,7 @@ void *store_take(struct store *store, size_t count, size_t size, double share)
     const size_t bytes = (count * size + LINE - 1) / LINE * LINE;
     void *memory = keep(store, memory_columns(LINE, bytes), free, bytes, share);
     if (memory)
-        memset(memory, 0, bytes);
+        memory_clear(memory, bytes);
     return memory;
 }
 

@@ -19,6 +19,9 @@ void *memory_aligned(size_t alignment, size_t bytes);
    system has them. Their first use can take a third of a second, as the system clears and gathers the pages. */
 void *memory_columns(size_t alignment, size_t bytes);
 
+/* Set to zero by all threads: memory that is touched first takes longer to get than to fill. */
+void memory_clear(void *memory, size_t bytes);
+
 /* Zeroed memory, at a page; only pages that are written take room. Huge ones, where the system has them, are faster to
    write in long stretches, and take up to 2 MB more at the ends of each. Freed by memory_sparse_free, which accepts
    NULL. NULL where the address space is too small. */

@@ -38,7 +38,7 @@ static enum status echoes_make(const struct scene *scene, struct echoes echoes[2
     return status;
 }
 
-enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned)
+enum status planned_make(const struct scene *scene, const struct budget *budget, bool both, struct planned *planned)
 {
     const struct acquisition *a = &scene->acquisition;
     struct echoes echoes[2] = {{0}};
@@ -49,8 +49,10 @@ enum status planned_make(const struct scene *scene, const struct budget *budget,
         status = echoes_make(scene, echoes);
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++) {
         const struct problem problem = scene_problem(scene, (enum precision)precision);
-        const bool measure = planned->measured && !planned->choices[PRECISION_FLOAT].found;
-        status = choice_make(&problem, measure ? echoes : NULL, budget, &planned->choices[precision]);
+        const bool found = planned->choices[PRECISION_FLOAT].found;
+        if (both || !found)
+            status = choice_make(&problem, planned->measured && !found ? echoes : NULL, budget,
+                                 &planned->choices[precision]);
     }
     echoes_free(&echoes[PRECISION_FLOAT]);
     echoes_free(&echoes[PRECISION_DOUBLE]);

@@ -48,26 +48,27 @@ static enum status candidate_spec(const struct candidate *c, enum precision prec
 
 /* ---- the exact image on the probe ---- */
 
-/* The fastest whose error by law is small beside the budget; no law covers an image that is dark beside its echoes. In
-   the general engine, by every delay: few pixels pay neither for tables nor for what stands for delays. */
+/* Polynomials whose error by law is small beside the budget, or `reference`: no law covers an image that is dark beside
+   its echoes. In the general engine, by every delay: few pixels pay neither for tables nor for what stands for delays. */
 static enum status exact_spec(struct trial *t, struct spec *spec)
 {
-    static const char *const settings[] = {"bp_sinc:window=kaiser_band,exact=true,taps=16",
-                                           "bp_sinc:window=kaiser_band,exact=true,taps=32"};
-    for (size_t k = 0; k < sizeof settings / sizeof *settings && !t->dark; k++) {
-        struct forecast forecast;
-        enum status status = spec_parse(settings[k], spec);
+    const double error = LAWS_EXACT * t->setting.budget->error, least = 1e-8;
+    char text[64];
+    struct forecast forecast;
+    snprintf(text, sizeof text, "bp_farrow:exact=true,error=%.3e", 0.9 * error);
+    t->exact = 0;
+    if (!t->dark && 0.9 * error >= least) {
+        const enum status status = spec_parse(text, spec);
         if (status != STATUS_OK)
             return status;
         spec->precision = t->setting.problem->precision;
         if (algorithm_forecast(spec->algorithm, t->setting.problem, spec->options, &forecast) == STATUS_OK
-            && forecast_error(&forecast) <= LAWS_EXACT * t->setting.budget->error) {
+            && forecast_error(&forecast) <= error) {
             t->exact = forecast_error(&forecast);
             return STATUS_OK;
         }
         spec_free(spec);
     }
-    t->exact = 0;
     return spec_parse("reference:precision=double", spec);
 }
 
@@ -87,8 +88,41 @@ static enum status probe_again(struct trial *t, const struct image *pilot)
 
 /* ---- one candidate ---- */
 
-/* Form its image of the problem, and *work of its plan; the image is empty where it is out by memory or refused.
-   `image` NULL: plan it only. */
+/* Its plan's work; out by memory where the process would take too much. */
+static void work_take(struct trial *t, struct candidate *c, const struct problem *problem, const struct work *work)
+{
+    const double bytes = process_bytes(t->setting.problem, work->bytes);
+    if (problem == t->setting.problem)
+        c->bytes = bytes;
+    if (bytes <= t->setting.budget->bytes)
+        return;
+    c->verdict = CANDIDATE_MEMORY;
+    snprintf(c->reason, sizeof c->reason, "its process takes %.3g MB, more than %.3g MB", bytes / 1e6,
+             t->setting.budget->bytes / 1e6);
+}
+
+/* *work of its plan, and its verdict by memory. */
+static enum status candidate_plan(struct trial *t, struct candidate *c, struct work *work)
+{
+    const struct problem *problem = t->setting.problem;
+    struct problem counted = *problem;
+    struct spec spec;
+    void *plan;
+    enum status status = candidate_spec(c, problem->precision, &spec);
+    if (status != STATUS_OK)
+        return status;
+    counted.estimate = true;
+    status = algorithm_plan(spec.algorithm, &counted, spec.options, &plan);
+    if (status == STATUS_OK) {
+        *work = spec.algorithm->work(plan);
+        spec.algorithm->destroy(plan);
+        work_take(t, c, problem, work);
+    }
+    spec_free(&spec);
+    return status;
+}
+
+/* Form its image of the problem, and *work of its plan; the image is empty where it is out by memory or refused. */
 static enum status candidate_form(struct trial *t, struct candidate *c, const struct problem *problem,
                                   struct image *image, struct work *work)
 {
@@ -107,14 +141,8 @@ static enum status candidate_form(struct trial *t, struct candidate *c, const st
     status = imaging_open(&spec, &counted, &imaging);
     if (status == STATUS_OK) {
         *work = spec.algorithm->work(imaging.plan);
-        const double bytes = process_bytes(t->setting.problem, work->bytes);
-        if (problem == t->setting.problem)
-            c->bytes = bytes;
-        if (bytes > t->setting.budget->bytes) {
-            c->verdict = CANDIDATE_MEMORY;
-            snprintf(c->reason, sizeof c->reason, "its process takes %.3g MB, more than %.3g MB", bytes / 1e6,
-                     t->setting.budget->bytes / 1e6);
-        } else if (image) {
+        work_take(t, c, problem, work);
+        if (c->verdict != CANDIDATE_MEMORY) {
             stages_begin(&stages);
             status = imaging_execute(&imaging, &t->echoes[precision], &stages);
             if (status == STATUS_OK)
@@ -247,7 +275,7 @@ static enum status candidate_try(struct trial *t, struct candidate *c)
         status = candidate_measure(t, c, &image, &work);
     const bool whole = image.patch_count > 0;
     if (status == STATUS_OK && c->verdict == CANDIDATE_SLOWER && !whole)
-        status = candidate_form(t, c, t->setting.problem, NULL, &work);
+        status = candidate_plan(t, c, &work);
     if (status == STATUS_UNSUPPORTED)
         return laws_refused(c, status);
     if (status == STATUS_OK && c->verdict == CANDIDATE_MEMORY)

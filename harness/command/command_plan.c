@@ -72,7 +72,7 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
     struct tiled tiled;
     struct text_file file;
     table_begin(stdout, false);
-    enum status status = plan_make(scene, budget, &planned, &tiled);
+    enum status status = plan_make(scene, budget, task->output, &planned, &tiled);
     if (status == STATUS_OK)
         status = answer_print(task, scene, &planned, &tiled, nodes);
     check_warnings(stdout, scene, false);
@@ -108,7 +108,7 @@ static enum status time_search(const char *text, const struct scene *scene, stru
         struct tiled tiled;
         const double middle = (low + high) / 2;
         const struct budget tried = {.error = pow(10, middle), .bytes = budget->bytes, .seconds = budget->seconds};
-        const enum status status = plan_make(scene, &tried, &planned, &tiled);
+        const enum status status = plan_make(scene, &tried, false, &planned, &tiled);
         if (status != STATUS_OK)
             return status;
         const int precision = planned_precision(&planned);

@@ -15,8 +15,8 @@ bool plan_is_tiled(const struct scene *scene, double bytes)
 /* ---- one tile for all ---- */
 
 /* As if the tile were all of the image, and its pings all of the track. */
-static enum status tile_plan(const struct scene *scene, const struct budget *budget, const struct tiled *tiled,
-                             struct planned *planned)
+static enum status tile_plan(const struct scene *scene, const struct budget *budget, bool both,
+                             const struct tiled *tiled, struct planned *planned)
 {
     const struct pixel_window window = tile_dearest(&scene->acquisition, &tiled->tiles);
     const int first = tiled->cost.first, pings = tiled->cost.last - first + 1;
@@ -32,7 +32,7 @@ static enum status tile_plan(const struct scene *scene, const struct budget *bud
         flown = acquisition_part(scene->flown, first, pings);
         part.flown = &flown;
     }
-    const enum status status = planned_make(&part, &own, planned);
+    const enum status status = planned_make(&part, &own, both, planned);
     planned->scene = scene;
     planned->budget = *budget;
     return status;
@@ -64,8 +64,8 @@ static void planned_scale(struct planned *planned, const struct tiled *tiled)
 }
 
 /* Tiles of the chosen setting. Ahead of it, the planned tile is one of the setting that needs the least memory. */
-static enum status tiles_make(const struct scene *scene, const struct budget *budget, struct planned *planned,
-                              struct tiled *tiled)
+static enum status tiles_make(const struct scene *scene, const struct budget *budget, bool both,
+                              struct planned *planned, struct tiled *tiled)
 {
     struct spec spec;
     tiled->tiles.grid = scene->patches[0];
@@ -77,7 +77,7 @@ static enum status tiles_make(const struct scene *scene, const struct budget *bu
     if (status == STATUS_OK && tiled->cost.pings == 0)
         status = status_set(STATUS_UNSUPPORTED, "no ping of %s meets the middle of the image", scene->name);
     if (status == STATUS_OK)
-        status = tile_plan(scene, budget, tiled, planned);
+        status = tile_plan(scene, budget, both, tiled, planned);
     if (status != STATUS_OK || planned_precision(planned) < 0)
         return status;
     status = chosen_spec(planned, &spec);
@@ -93,17 +93,17 @@ static enum status tiles_make(const struct scene *scene, const struct budget *bu
     return status;
 }
 
-enum status plan_make(const struct scene *scene, const struct budget *budget, struct planned *planned,
+enum status plan_make(const struct scene *scene, const struct budget *budget, bool both, struct planned *planned,
                       struct tiled *tiled)
 {
     *planned = (struct planned){.scene = scene, .budget = *budget};
     *tiled = (struct tiled){.flop_s = NAN};
     enum status status;
     if (plan_is_tiled(scene, budget->bytes)) {
-        status = tiles_make(scene, budget, planned, tiled);
+        status = tiles_make(scene, budget, both, planned, tiled);
         return status == STATUS_UNSUPPORTED ? status_set(STATUS_FAILED, "plan: %s", status_message()) : status;
     }
-    status = planned_make(scene, budget, planned);
+    status = planned_make(scene, budget, both, planned);
     if (status == STATUS_OK && planned_precision(planned) >= 0)
         tiled->flop_s = chosen(planned)->list[0].seconds / chosen(planned)->work.flops;
     return status;

@@ -17,7 +17,7 @@ struct tiled {
 bool plan_is_tiled(const struct scene *scene, double bytes);
 /* As planned_make; of an image beyond the memory times and counted work are those of all tiles, and memory is that of a
    process that forms one after the other. Errors: also as tile_choose. */
-enum status plan_make(const struct scene *scene, const struct budget *budget, struct planned *planned,
+enum status plan_make(const struct scene *scene, const struct budget *budget, bool both, struct planned *planned,
                       struct tiled *tiled);
 
 /* Print the tiles, and what they read and write. */

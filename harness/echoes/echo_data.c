@@ -46,7 +46,7 @@ static void *allocate_zeroed(size_t size)
     size_t whole_lines = (size + line - 1) / line * line;
     void *memory = aligned_alloc(line, whole_lines);
     if (memory) {
-        memset(memory, 0, whole_lines);
+        memory_clear(memory, whole_lines);
     }
     return memory;
 }
@@ -61,6 +61,8 @@ static double complex number_at(const void *numbers, enum precision precision, s
 static void numbers_copy(const void *from, enum precision from_precision, int exponent, void *to,
                          enum precision precision, size_t count)
 {
+    const size_t few = 1 << 16;
+#pragma omp parallel for if (count > few)
     for (size_t i = 0; i < count; i++) {
         double complex z = number_at(from, from_precision, i);
         if (exponent != 0)

@@ -19,9 +19,10 @@ enum { LENGTH = 8, COUNT = PROBE_PIXELS / LENGTH, BRIGHT = 32, DRAWN = COUNT - B
 static const double DEVIATIONS = 2; /* of Student's distribution with some thirty degrees of freedom, at 95 % */
 
 struct segment {
-    struct probe_place place;
-    double energy;
+    double energy; /* LEFT_OUT where it does not count */
+    size_t number; /* in order of the image: patches, rows, segments of a row */
 };
+static const double LEFT_OUT = -1;
 
 static int segments_of_row(const struct grid *grid)
 {
@@ -50,21 +51,30 @@ static bool counts(const struct region *region, const struct grid *grid, int row
     return region->count == 0;
 }
 
-/* The segments of a row that count; returns how many. */
-static int row_fill(const struct image *pilot, int patch, int row, const struct region *region, struct segment *list)
+/* The segments of a row, the first of which has this number. */
+static void row_fill(const struct image *pilot, int patch, int row, const struct region *region, size_t number,
+                     struct segment *list)
 {
     const struct grid *grid = &pilot->patches[patch];
-    int count = 0;
     for (int k = 0; k < segments_of_row(grid); k++) {
         const int first = segment_first(grid, k), end = segment_first(grid, k + 1);
-        if (!counts(region, grid, row, first, end))
-            continue;
-        struct segment *segment = &list[count++];
-        *segment = (struct segment){.place = {patch, row, first, 1}};
-        for (int j = first; j < end; j++)
-            segment->energy += square(image_pixel(pilot, patch, row, j));
+        double energy = counts(region, grid, row, first, end) ? 0 : LEFT_OUT;
+        for (int j = first; j < end && energy >= 0; j++)
+            energy += square(image_pixel(pilot, patch, row, j));
+        list[k] = (struct segment){energy, number + (size_t)k};
     }
-    return count;
+}
+
+static struct probe_place place_of(const struct image *pilot, size_t number)
+{
+    int patch = 0;
+    size_t each = (size_t)segments_of_row(&pilot->patches[0]);
+    while (number >= each * (size_t)pilot->patches[patch].r_count) {
+        number -= each * (size_t)pilot->patches[patch++].r_count;
+        each = (size_t)segments_of_row(&pilot->patches[patch]);
+    }
+    return (struct probe_place){patch, (int)(number / each),
+                                segment_first(&pilot->patches[patch], (int)(number % each)), 1};
 }
 
 /* The brightest first; of equal ones, the first of the image. */
@@ -73,23 +83,31 @@ static int compare(const void *a, const void *b)
     const struct segment *one = a, *other = b;
     if (one->energy != other->energy)
         return one->energy > other->energy ? -1 : 1;
-    const int order[] = {one->place.patch - other->place.patch, one->place.row - other->place.row};
-    return order[0] ? order[0] : order[1] ? order[1] : one->place.column - other->place.column;
+    return (one->number > other->number) - (one->number < other->number);
 }
 
-/* The segments of an image that count, the brightest first: malloc'ed [*count]; NULL without memory. */
+/* The segments of an image, those that count ahead and the brightest first: malloc'ed, *count of them count; NULL
+   without memory. */
 static struct segment *segments_sorted(const struct image *pilot, const struct region *region, size_t *count)
 {
-    size_t all = 0;
+    size_t all = 0, begin = 0;
     for (int k = 0; k < pilot->patch_count; k++)
         all += (size_t)segments_of_row(&pilot->patches[k]) * (size_t)pilot->patches[k].r_count;
     struct segment *list = malloc(all * sizeof *list);
     *count = 0;
-    for (int k = 0; k < pilot->patch_count && list; k++)
-        for (int i = 0; i < pilot->patches[k].r_count; i++)
-            *count += (size_t)row_fill(pilot, k, i, region, list + *count);
+    for (int k = 0; k < pilot->patch_count && list; k++) {
+        const size_t each = (size_t)segments_of_row(&pilot->patches[k]);
+#pragma omp parallel for
+        for (int i = 0; i < pilot->patches[k].r_count; i++) {
+            const size_t first = begin + (size_t)i * each;
+            row_fill(pilot, k, i, region, first, list + first);
+        }
+        begin += each * (size_t)pilot->patches[k].r_count;
+    }
     if (list)
-        qsort(list, *count, sizeof *list, compare);
+        qsort(list, all, sizeof *list, compare);
+    while (list && *count < all && list[*count].energy >= 0)
+        ++*count;
     return list;
 }
 
@@ -112,17 +130,17 @@ static double rank_at(int drawn, double count)
 }
 
 /* The brightest, and of each stretch of the rest one at random, which stands for as many as the stretch is long. */
-static void places_choose(const struct segment *list, size_t count, struct probe *probe)
+static void places_choose(const struct image *pilot, const struct segment *list, size_t count, struct probe *probe)
 {
     struct random random = random_seed(1, 0);
     probe->count = count <= COUNT ? (int)count : COUNT;
     const int bright = count <= COUNT ? (int)count : BRIGHT;
     for (int k = 0; k < bright; k++)
-        probe->places[k] = list[k].place;
+        probe->places[k] = place_of(pilot, list[k].number);
     for (int k = bright; k < probe->count; k++) {
         const double low = rank_at(k - BRIGHT, (double)count), high = rank_at(k - BRIGHT + 1, (double)count);
         const size_t at = (size_t)(low + random_uniform(&random) * (high - low));
-        probe->places[k] = list[at < count ? at : count - 1].place;
+        probe->places[k] = place_of(pilot, list[at < count ? at : count - 1].number);
         probe->places[k].stands_for = high - low;
     }
 }
@@ -172,7 +190,7 @@ static enum status segments_fill(const struct problem *problem, const struct ima
         (struct probe){.places = malloc(COUNT * sizeof *probe->places), .grids = malloc(COUNT * sizeof *probe->grids)};
     const bool made = list && probe->places && probe->grids;
     if (made)
-        places_choose(list, count, probe);
+        places_choose(pilot, list, count, probe);
     for (int k = 0; k < probe->count && made; k++)
         probe->grids[k] = grid_of(&problem->patches[probe->places[k].patch], &probe->places[k]);
     free(list);

@@ -69,6 +69,24 @@ void tile_echoes_close(struct tile_echoes *held)
     free(held->wanted);
 }
 
+/* Give up the pings that are not wanted: each stretch at once, which leaves no page that two of them share. */
+static void pings_drop(int pings, struct tile_echoes *held, size_t bytes)
+{
+    int first = 0;
+    bool some = false;
+    for (int p = 0; p <= pings; p++) {
+        if (p < pings && !held->wanted[p]) {
+            some |= held->has[p];
+            held->has[p] = false;
+            continue;
+        }
+        if (some)
+            memory_sparse_drop((void *)held->echoes.samples, (size_t)first * bytes, (size_t)p * bytes);
+        some = false;
+        first = p + 1;
+    }
+}
+
 /* Read the pings that a plan needs and that are not held; of another stretch, only those that this plan needs are kept.
  */
 static enum status pings_read(const struct scene *scene, const struct imaging *imaging, const struct problem *problem,
@@ -81,11 +99,9 @@ static enum status pings_read(const struct scene *scene, const struct imaging *i
         &held->largest};
     int count = 0;
     imaging_reads(imaging, problem, held->wanted);
+    if (held->column != problem->window->column)
+        pings_drop(a->pings, held, bytes);
     for (size_t p = 0; p < (size_t)a->pings; p++) {
-        if (held->has[p] && !held->wanted[p] && held->column != problem->window->column) {
-            memory_sparse_drop(pings.samples, p * bytes, (p + 1) * bytes);
-            held->has[p] = false;
-        }
         held->wanted[p] &= !held->has[p];
         count += held->wanted[p];
     }

@@ -366,10 +366,10 @@ enum status simulation_pings(struct simulation *simulation, int first, int count
     const long long begin = (long long)first * a->receivers, end = begin + (long long)count * a->receivers;
     long long unfit = end;
     progress_part((double)first / a->pings, ((double)first + count) / a->pings, (int)(end - begin));
-    memset(samples, 0, (size_t)(end - begin) * each * sizeof *samples);
 #pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
     for (long long k = begin; k < end; k++) {
         double complex *record = samples + (size_t)(k - begin) * each;
+        memset(record, 0, each * sizeof *record);
         if (!progress_step())
             continue;
         simulate_pair(scene, replica, (size_t)k,
