@@ -11,6 +11,7 @@ root_doc = 'docs/index'
 include_patterns = ['*.md', 'docs/*.md', 'docs/papers/*.md', 'docs/algorithms/*.md', 'algorithms/README.md',
                     'results/README.md', 'scenes/README.md']
 myst_heading_anchors = 3
+highlight_language = 'none'  # a block without a language is what a command prints
 
 
 def first_page(app, error):
