@@ -15,9 +15,9 @@ struct planned {
     struct choice choices[2]; /* by enum precision */
 };
 
-/* Plan a scene by images of its echoes that take at most `budget->seconds` each, and by laws beyond that. Where float is
-   within the budget, double is planned if `both` are wanted, by laws alone. planned_free is due even on failure. Errors:
-   as choice_make. */
+/* Plan a scene by images of its echoes that take at most `budget->seconds` each, and by laws beyond that. Where float
+   is within the budget, double is planned if `both` are wanted, by laws alone. planned_free is due even on failure.
+   Errors: as choice_make. */
 enum status planned_make(const struct scene *scene, const struct budget *budget, bool both, struct planned *planned);
 void planned_free(struct planned *planned);
 /* The chosen precision: float, unless only double is within the budget; -1 where neither is. */

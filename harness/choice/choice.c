@@ -48,34 +48,10 @@ static enum status candidate_spec(const struct candidate *c, enum precision prec
 
 /* ---- the exact image on the probe ---- */
 
-/* Polynomials whose error by law is small beside the budget, or `reference`: no law covers an image that is dark beside
-   its echoes. In the general engine, by every delay: few pixels pay neither for tables nor for what stands for delays. */
-static enum status exact_spec(struct trial *t, struct spec *spec)
-{
-    const double error = LAWS_EXACT * t->setting.budget->error, least = 1e-8;
-    char text[64];
-    struct forecast forecast;
-    snprintf(text, sizeof text, "bp_farrow:exact=true,error=%.3e", 0.9 * error);
-    t->exact = 0;
-    if (!t->dark && 0.9 * error >= least) {
-        const enum status status = spec_parse(text, spec);
-        if (status != STATUS_OK)
-            return status;
-        spec->precision = t->setting.problem->precision;
-        if (algorithm_forecast(spec->algorithm, t->setting.problem, spec->options, &forecast) == STATUS_OK
-            && forecast_error(&forecast) <= error) {
-            t->exact = forecast_error(&forecast);
-            return STATUS_OK;
-        }
-        spec_free(spec);
-    }
-    return spec_parse("reference:precision=double", spec);
-}
-
 static enum status probe_again(struct trial *t, const struct image *pilot)
 {
     struct spec spec;
-    enum status status = exact_spec(t, &spec);
+    enum status status = laws_exact(&t->setting, t->dark, &spec, &t->exact);
     if (status != STATUS_OK)
         return status;
     status = t->probed ? probe_exact(&spec, t->setting.problem, &t->echoes[spec.precision], &t->probe)
@@ -362,9 +338,12 @@ static void reasons_fill(struct choice *choice)
         const double ratio = c->seconds / choice->list[0].seconds;
         if (c->verdict != CANDIDATE_SLOWER)
             continue;
-        if (laws_open(c))
-            snprintf(c->reason, sizeof c->reason, "%.2f times the chosen one's time%s, %s", ratio,
-                     c->budgeted ? " or more" : "", ratio < 1 ? "not tried, which takes longer" : "whatever its error");
+        if (laws_open(c) && ratio < 1)
+            snprintf(c->reason, sizeof c->reason,
+                     "may take %.2f times the chosen one's time, or more; to find out takes longer", ratio);
+        else if (laws_open(c))
+            snprintf(c->reason, sizeof c->reason, "%.2f times the chosen one's time%s, whatever its error", ratio,
+                     c->budgeted ? " or more" : "");
         else
             snprintf(c->reason, sizeof c->reason, "within the budget, %.2f times the chosen one's time", ratio);
     }

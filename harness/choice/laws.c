@@ -18,6 +18,8 @@ static const double DELAYS_MOST = 0.4, PHASE_SHARE = 0.8;
 static const double LIMIT_PAYS = 0.95;
 /* Of the budget, the share of a setting with a parameter `error`; delays and rounding have the rest. */
 static const double BUDGETED = 0.9;
+/* Of the budget, the error by law that the stand-in for the exact image may have. */
+static const double EXACT = 0.1;
 /* s: the time to count images of subapertures, and all range migrations. */
 static const double COUNT_IMAGES = 0.05, COUNT_MIGRATIONS = 0.005;
 
@@ -270,4 +272,27 @@ enum status laws_without_tables(const struct setting *setting, const struct cand
         return STATUS_OK;
     choice->count++;
     return candidate_count(setting, general);
+}
+
+/* In the general engine, by every delay: few pixels pay neither for tables nor for what stands for delays. */
+enum status laws_exact(const struct setting *setting, bool dark, struct spec *spec, double *error)
+{
+    const double most = EXACT * setting->budget->error, asked = 0.9 * most, least = 1e-8;
+    char text[64];
+    struct forecast forecast;
+    snprintf(text, sizeof text, "bp_farrow:exact=true,error=%.3e", asked);
+    *error = 0;
+    if (!dark && asked >= least) {
+        const enum status status = spec_parse(text, spec);
+        if (status != STATUS_OK)
+            return status;
+        spec->precision = setting->problem->precision;
+        if (algorithm_forecast(spec->algorithm, setting->problem, spec->options, &forecast) == STATUS_OK
+            && forecast_error(&forecast) <= most) {
+            *error = forecast_error(&forecast);
+            return STATUS_OK;
+        }
+        spec_free(spec);
+    }
+    return spec_parse("reference:precision=double", spec);
 }

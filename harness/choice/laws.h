@@ -3,6 +3,7 @@
 #define SASBENCH_CHOICE_LAWS_H
 
 #include "choice/choice.h"
+#include "imaging/spec.h"
 
 /* What all candidates of a problem share. */
 struct setting {
@@ -12,9 +13,6 @@ struct setting {
     double ratio; /* back projection's measured errors over its laws, which assume echoes as bright as the image; 1
                      until one is measured */
 };
-
-/* Of the budget, the error by law that the stand-in for the exact image may have. */
-#define LAWS_EXACT 0.1
 
 /* Fill the choice with all candidates. Those that are not out are CANDIDATE_SLOWER until one is chosen. Errors:
    STATUS_FAILED. */
@@ -46,5 +44,10 @@ enum status laws_without_tables(const struct setting *setting, const struct cand
 
 /* Keep a refusal as the candidate's reason: it is no error. */
 enum status laws_refused(struct candidate *candidate, enum status status);
+
+/* A SPEC that stands for the exact image on few pixels, freed with spec_free, and its error by law: polynomials whose
+   error is small beside the budget, or `reference` with 0, as no law covers an image that is `dark` beside its
+   echoes. */
+enum status laws_exact(const struct setting *setting, bool dark, struct spec *spec, double *error);
 
 #endif

@@ -44,6 +44,9 @@ enum status command_simulate(const struct task *task)
         const struct sample_source source = {simulation_exponent(simulation), pings_simulate, simulation};
         status = echo_file_stream(task->output, &scene.acquisition, &source, &notes);
     }
+    if (status == STATUS_OK)
+        printf("%s: echoes of %s, %d samples x %d receivers x %d pings\n", task->output, scene.name,
+               scene.acquisition.samples, scene.acquisition.receivers, scene.acquisition.pings);
     simulation_close(simulation);
     scene_free(&scene);
     return status;

@@ -12,6 +12,7 @@
 
 #include "command/commands.h"
 #include "common/isa.h"
+#include "contract/algorithm.h"
 #include "guests/external.h"
 #include "text/number.h"
 #include "text/shown_text.h"
@@ -243,6 +244,8 @@ static enum status command_find(const char *name, const struct command **found)
     if (strcmp(name, "test") == 0)
         return status_set(STATUS_INVALID,
                           "'test' is a command of the script ./sasbench: ./sasbench test [--all | NAME ...]");
+    if (algorithm_find(name))
+        return status_set(STATUS_INVALID, "'%s' is an algorithm, not a command: sasbench info %s", name, name);
     return status_set(STATUS_INVALID, "'%s' is not a command%s accepted: %stest, --help, --version", name, meant,
                       names);
 }
