@@ -6,6 +6,7 @@
 
 #include "backprojection/budget.h"
 #include "backprojection/factorised/factorised.h"
+#include "common/memory.h"
 #include "common/progress.h"
 
 /* re, im of some values times exp(-j angle) from tables of cosines and sines. */
@@ -275,7 +276,7 @@ enum status factorised_execute(struct factorised *plan, const struct echoes *ech
         plan->scratch[n].outside = 0;
     for (int k = 0; k < tree->problem.patch_count; k++) {
         const struct grid *grid = &tree->problem.patches[k];
-        memset(plan->sums[k], 0, 2 * (size_t)grid->x_count * (size_t)grid->r_count * size);
+        memory_clear(plan->sums[k], 2 * (size_t)grid->x_count * (size_t)grid->r_count * size);
     }
     progress_part(0, 1, tree->first[tree->settings.stages]);
     for (int n = tree->first[tree->settings.stages - 1]; n < tree->first[tree->settings.stages]; n++)

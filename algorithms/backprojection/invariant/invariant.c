@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "backprojection/invariant/invariant_plan.h"
+#include "common/memory.h"
 #include "common/progress.h"
 
 enum { ROWS_SUMMED = 4 /* image rows of one task */ };
@@ -144,16 +145,6 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
     }
 }
 
-static void sums_clear(const struct bp *bp, int k)
-{
-    const struct invariant *in = bp->state;
-    const size_t bytes = 2 * row_values(in, k) * real_size(bp->problem.precision);
-    const int rows = problem_window(&bp->problem, k).rows;
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < rows; i++)
-        memset((char *)in->sums[k] + (size_t)i * bytes, 0, bytes);
-}
-
 /* The sums [r][rho][j] into the pixels [r][rho + ratio j]. */
 static void store(const struct bp *bp, int k, void *pixels)
 {
@@ -184,10 +175,10 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
     int receivers = bp->problem.acquisition->receivers;
     size_t size = real_size(bp->problem.precision), slab = (size_t)in->receivers * in->slab.receiver_stride * size;
     for (int k = 0; k < in->patch_count; k++)
-        sums_clear(bp, k);
-    if (!bp->problem.window) {        /* a window's memory is zero where it is not used */
-        memset(in->slab_re, 0, slab); /* the lead and the end of each row stay zero */
-        memset(in->slab_im, 0, slab);
+        memory_clear(in->sums[k], 2 * row_values(in, k) * (size_t)problem_window(&bp->problem, k).rows * size);
+    if (!bp->problem.window) {           /* a window's memory is zero where it is not used */
+        memory_clear(in->slab_re, slab); /* the lead and the end of each row stay zero */
+        memory_clear(in->slab_im, slab);
     }
     stages_end(stages, "clear");
     for (int first = 0; first < receivers; first += in->receivers) {
