@@ -207,17 +207,17 @@ static enum status stage(struct formula *formula, struct call *call, struct valu
 static enum status table_time(struct formula *formula, struct call *call, struct values *values)
 {
     char accepted[600];
-    struct source source;
     const char *table = call->text[0], *method = call->text[1], *definition = call->text[2];
     const int wrong = table_seconds_check(table, method, definition, accepted, sizeof accepted);
     if (wrong >= 0)
         return formula_error(formula, call->at[wrong], "there is no time of '%s'; accepted: %s", call->text[wrong],
                              accepted);
     values->timed = formula->measures = formula->times = true;
-    if (table_time_source(formula->scheme, table, method, definition, &source)) {
-        formula->by_scheme |= source.by_scheme;
+    const struct source *source = table_time_source(formula->scheme, table, method, definition);
+    if (source) {
+        formula->by_scheme |= source->by_scheme;
         if (formula->need)
-            formula->need(formula->to, source.scene, source.spec);
+            formula->need(formula->to, source->scene, source->spec);
     }
     if (formula->measured)
         values->at[0] = table_seconds(formula->measured, formula->scheme, table, method, definition);

@@ -165,6 +165,8 @@ static enum status claims_report(const char *directory, const struct selection *
         const struct claim *claim = &selection->claims->claims[n];
         struct evaluation evaluations[SCHEMES] = {0};
         bool there = claim->need_count > 0;
+        for (int k = 0; k < claim->need_count; k++)
+            there = there && measured_row(measured, claim->needs[k].scene, claim->needs[k].spec);
         if (!selection->asked[n] && !there)
             continue;
         for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++) {

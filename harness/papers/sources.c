@@ -2,6 +2,7 @@
 #include "papers/sources.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -155,16 +156,24 @@ static void source_make(const struct way *way, const struct method *method, enum
     source->by_scheme = scheme_spec(scheme, text, source->spec, sizeof source->spec);
 }
 
-bool source_at(int k, struct source *source)
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+static struct source sources[WAYS * METHODS * SCHEMES];
+static int source_count;
+
+static void sources_make(void)
 {
     for (int w = 0; w < WAYS; w++)
         for (int m = 0; m < METHODS; m++)
             for (enum scheme scheme = 0; scheme < SCHEMES && goes_with(&ways[w], &methods[m]); scheme++) {
-                source_make(&ways[w], &methods[m], scheme, source);
-                if ((scheme == 0 || source->by_scheme) && k-- == 0)
-                    return true;
+                source_make(&ways[w], &methods[m], scheme, &sources[source_count]);
+                source_count += scheme == 0 || sources[source_count].by_scheme;
             }
-    return false;
+}
+
+const struct source *source_at(int k)
+{
+    pthread_once(&once, sources_make);
+    return k < source_count ? &sources[k] : NULL;
 }
 
 const char *source_place(const char *table, const char *target, int *index)
@@ -190,29 +199,17 @@ int need_add(struct need *needs, int count, int room, struct need need)
     return count + 1;
 }
 
-/* Texts of needs live as long as the program: each SPEC is made once. */
-static const char *spec_kept(const char *spec)
-{
-    static char kept[64][200];
-    int k = 0;
-    while (k < 63 && *kept[k] && strcmp(kept[k], spec) != 0)
-        k++;
-    snprintf(kept[k], sizeof kept[k], "%s", spec);
-    return kept[k];
-}
-
 int table_needs(const char *id, struct need *needs, int count, int room)
 {
-    struct source source;
-    for (int k = 0; source_at(k, &source); k++) {
-        if (source.planned || strcmp(id, source.table) != 0)
+    const struct source *source;
+    for (int k = 0; (source = source_at(k)); k++) {
+        if (source->planned || strcmp(id, source->table) != 0)
             continue;
-        const char *spec = spec_kept(source.spec);
-        if (source.scene)
-            count = need_add(needs, count, room, (struct need){source.scene, spec});
-        for (int p = 0; p < PLACES && !source.scene; p++)
-            if (strcmp(places[p].table, source.table) == 0)
-                count = need_add(needs, count, room, (struct need){places[p].scene, spec});
+        if (source->scene)
+            count = need_add(needs, count, room, (struct need){source->scene, source->spec});
+        for (int p = 0; p < PLACES && !source->scene; p++)
+            if (strcmp(places[p].table, source->table) == 0)
+                count = need_add(needs, count, room, (struct need){places[p].scene, source->spec});
     }
     return count;
 }
@@ -241,43 +238,42 @@ static const char *definition_of_others(const char *definition)
                                                 : definition;
 }
 
-bool table_time_source(enum scheme scheme, const char *id, const char *method, const char *definition,
-                       struct source *source)
+const struct source *table_time_source(enum scheme scheme, const char *id, const char *method, const char *definition)
 {
     const char *const wanted[] = {definition, definition_of_others(definition)};
+    const struct source *source;
     for (int n = 0; n < 2; n++)
-        for (int k = 0; source_at(k, source); k++)
+        for (int k = 0; (source = source_at(k)); k++)
             if (strcmp(source->table, id) == 0 && strcmp(source->method, method) == 0 && source->definition
                 && strcmp(source->definition, wanted[n]) == 0 && (!source->by_scheme || source->scheme == scheme))
-                return true;
-    return false;
+                return source;
+    return NULL;
 }
 
 double table_seconds(struct measured *measured, enum scheme scheme, const char *id, const char *method,
                      const char *definition)
 {
-    struct source source;
-    return table_time_source(scheme, id, method, definition, &source)
-               ? source_seconds(measured, &source)
-               : measured_missing(measured, "%s has no times of %s by %s", id, method, definition);
+    const struct source *source = table_time_source(scheme, id, method, definition);
+    return source ? source_seconds(measured, source)
+                  : measured_missing(measured, "%s has no times of %s by %s", id, method, definition);
 }
 
 double table_noise(const struct measured *measured, const char *id, const char *definition)
 {
-    struct source source;
+    const struct source *source;
     double noise = 0.1, least = INFINITY, most = 0;
     char scene[80] = "";
-    for (int k = 0; source_at(k, &source); k++) {
-        if (strcmp(source.table, id) != 0 || !source.definition
-            || (strcmp(source.definition, definition) != 0
-                && strcmp(source.definition, definition_of_others(definition)) != 0))
+    for (int k = 0; (source = source_at(k)); k++) {
+        if (strcmp(source->table, id) != 0 || !source->definition
+            || (strcmp(source->definition, definition) != 0
+                && strcmp(source->definition, definition_of_others(definition)) != 0))
             continue;
-        const struct measurement *row = measured_row(measured, source.scene, source.spec);
+        const struct measurement *row = measured_row(measured, source->scene, source->spec);
         if (!row)
             continue;
         noise = fmax(noise, row->run_s / row->run_min_s - 1);
-        if (strcmp(scene, source.scene) != 0) {
-            snprintf(scene, sizeof scene, "%s", source.scene);
+        if (strcmp(scene, source->scene) != 0) {
+            snprintf(scene, sizeof scene, "%s", source->scene);
             least = INFINITY;
             most = 0;
         }
@@ -310,13 +306,13 @@ static void accept(char *accepted, size_t size, const char *text)
 int table_seconds_check(const char *id, const char *method, const char *definition, char *accepted, size_t size)
 {
     const char *const wanted[] = {id, method, definition};
-    struct source source;
+    const struct source *source;
     for (int text = 0; text < 3; text++) {
         bool found = false;
         *accepted = '\0';
-        for (int k = 0; source_at(k, &source); k++) {
-            const char *const texts[] = {source.table, source.method, source.definition};
-            bool fits = table_has_times(source.table);
+        for (int k = 0; (source = source_at(k)); k++) {
+            const char *const texts[] = {source->table, source->method, source->definition};
+            bool fits = table_has_times(source->table);
             for (int n = 0; n < text; n++)
                 fits = fits && strcmp(texts[n], n == 2 ? definition_of_others(wanted[n]) : wanted[n]) == 0;
             if (!fits)

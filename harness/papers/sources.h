@@ -74,8 +74,8 @@ struct source {
     bool by_scheme; /* depends on the scheme; else it is the same for both */
     bool planned;   /* the number comes from the plan, without a measurement */
 };
-/* The source k; false behind the last. */
-bool source_at(int k, struct source *source);
+/* The source k, which lasts; NULL behind the last. */
+const struct source *source_at(int k);
 /* The scene whose target, *index from 0, corresponds to a printed one; NULL if there is none. */
 const char *source_place(const char *table, const char *target, int *index);
 
@@ -91,8 +91,7 @@ double table_noise(const struct measured *measured, const char *id, const char *
 /* Is there such a time? -1, or which of the three texts (from 0) does not exist; `accepted` then lists those that
    do. */
 int table_seconds_check(const char *id, const char *method, const char *definition, char *accepted, size_t size);
-/* The measurement behind such a time; false if there is none. */
-bool table_time_source(enum scheme scheme, const char *id, const char *method, const char *definition,
-                       struct source *source);
+/* The measurement behind such a time; NULL if there is none. */
+const struct source *table_time_source(enum scheme scheme, const char *id, const char *method, const char *definition);
 
 #endif

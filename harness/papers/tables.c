@@ -99,17 +99,17 @@ static void lines_of_target(struct lines *lines, int row, const struct paper_tab
     const char *target = csv_cell(&measured->published, row, PUBLISHED_TARGET);
     const char *method = csv_cell(&measured->published, row, PUBLISHED_METHOD);
     const char *quantity = csv_cell(&measured->published, row, PUBLISHED_QUANTITY);
-    struct source source;
-    for (int s = 0; source_at(s, &source); s++) {
-        if (!source_is(&source, table, method))
+    const struct source *source;
+    for (int s = 0; (source = source_at(s)); s++) {
+        if (!source_is(source, table, method))
             continue;
         int index = 0;
-        const char *place = source_place(table->id, target, &index), *scene = source.scene ? source.scene : place;
+        const char *place = source_place(table->id, target, &index), *scene = source->scene ? source->scene : place;
         for (size_t k = 0; scene && k < sizeof kinds / sizeof *kinds; k++)
             if (strcmp(kinds[k].quantity, quantity) == 0) {
-                double ours = measured_target(measured, scene, source.spec, index, kinds[k].definition, kinds[k].offset,
-                                              quantity);
-                line_add(lines, row, table, label_of(&source, kinds[k].label), paper,
+                double ours = measured_target(measured, scene, source->spec, index, kinds[k].definition,
+                                              kinds[k].offset, quantity);
+                line_add(lines, row, table, label_of(source, kinds[k].label), paper,
                          kinds[k].magnitude ? fabs(ours) : ours);
             }
     }
@@ -121,12 +121,12 @@ static void lines_of_time(struct lines *lines, int row, const struct paper_table
     struct measured *measured = lines->measured;
     const char *method = csv_cell(&measured->published, row, PUBLISHED_METHOD);
     double base = published_value(measured, table->id, "", table->base, "time_s");
-    struct source source;
-    for (int s = 0; source_at(s, &source); s++)
-        if (source_is(&source, table, method)) {
-            double ours = table_seconds(measured, source.scheme, table->id, method, source.definition)
-                          / table_seconds(measured, source.scheme, table->id, table->base, source.definition);
-            line_add(lines, row, table, label_of(&source, source.definition), paper / base, ours);
+    const struct source *source;
+    for (int s = 0; (source = source_at(s)); s++)
+        if (source_is(source, table, method)) {
+            double ours = table_seconds(measured, source->scheme, table->id, method, source->definition)
+                          / table_seconds(measured, source->scheme, table->id, table->base, source->definition);
+            line_add(lines, row, table, label_of(source, source->definition), paper / base, ours);
             if (!lines->failed) {
                 lines->line[lines->count - 1].quantity = "time_ratio";
                 lines->line[lines->count - 1].unit = "1";
@@ -144,25 +144,25 @@ static void lines_of_image(struct lines *lines, int row, const struct paper_tabl
     struct measured *measured = lines->measured;
     const char *method = csv_cell(&measured->published, row, PUBLISHED_METHOD);
     const char *quantity = csv_cell(&measured->published, row, PUBLISHED_QUANTITY);
-    struct source source;
-    for (int s = 0; source_at(s, &source); s++)
+    const struct source *source;
+    for (int s = 0; (source = source_at(s)); s++)
         for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-            if (source_is(&source, table, method) && strcmp(kinds[k].quantity, quantity) == 0)
+            if (source_is(source, table, method) && strcmp(kinds[k].quantity, quantity) == 0)
                 line_add(lines, row, table, "against the exact image", paper,
-                         measured_value(measured, source.scene, source.spec, kinds[k].offset, quantity));
+                         measured_value(measured, source->scene, source->spec, kinds[k].offset, quantity));
 }
 
 static void lines_of_flops(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     struct measured *measured = lines->measured;
     const char *method = csv_cell(&measured->published, row, PUBLISHED_METHOD);
-    struct source source;
-    for (int s = 0; source_at(s, &source); s++)
-        if (source_is(&source, table, method)) {
-            line_add(lines, row, table, label_of(&source, source.definition), paper,
-                     measured_flops(measured, source.scene, source.spec, true));
-            line_add(lines, row, table, label_of(&source, "counted"), paper,
-                     measured_flops(measured, source.scene, source.spec, false));
+    const struct source *source;
+    for (int s = 0; (source = source_at(s)); s++)
+        if (source_is(source, table, method)) {
+            line_add(lines, row, table, label_of(source, source->definition), paper,
+                     measured_flops(measured, source->scene, source->spec, true));
+            line_add(lines, row, table, label_of(source, "counted"), paper,
+                     measured_flops(measured, source->scene, source->spec, false));
         }
 }
 
@@ -218,10 +218,10 @@ bool table_has_phases(const char *id)
 /* Does the table take its numbers from plans? */
 static bool table_is_planned(const char *id)
 {
-    struct source source;
+    const struct source *source;
     bool planned = false;
-    for (int k = 0; source_at(k, &source); k++)
-        planned |= source.planned && strcmp(source.table, id) == 0;
+    for (int k = 0; (source = source_at(k)); k++)
+        planned |= source->planned && strcmp(source->table, id) == 0;
     return planned;
 }
 

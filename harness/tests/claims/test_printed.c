@@ -30,17 +30,17 @@ static bool begins(const char *text, const char *with)
    upsampling. */
 static const char *method_of(const char *table, const char *scene, const char *spec)
 {
-    struct source source;
+    const struct source *source;
     const char *found = NULL;
     if (begins(spec, "rma_pca:blocks=16,")) /* the paper's PCA has no blocks */
         spec = "rma_pca:blocks=16";
     const bool by_3 = begins(spec, "bp_zeropad:factor=3"), by_9 = begins(spec, "bp_zeropad:factor=9");
     if (begins(table, "bp22") && (by_3 || by_9))
         return by_3 ? "linear, beta 2" : "linear, beta 8";
-    for (int k = 0; source_at(k, &source); k++)
-        if (strcmp(source.table, table) == 0 && strcmp(source.spec, spec) == 0
-            && (!source.scene || strcmp(table, "lbf21_t2") != 0 || strcmp(source.scene, scene) == 0))
-            found = source.method;
+    for (int k = 0; (source = source_at(k)); k++)
+        if (strcmp(source->table, table) == 0 && strcmp(source->spec, spec) == 0
+            && (!source->scene || strcmp(table, "lbf21_t2") != 0 || strcmp(source->scene, scene) == 0))
+            found = source->method;
     return found;
 }
 
