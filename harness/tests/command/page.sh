@@ -1,15 +1,19 @@
 #!/bin/bash
-# The commands of a page, in its order, in one empty folder: a block `sh` succeeds, or, where a block `text` follows at
-# once, prints that; `...` in it stands for any text or, alone on a line, any lines. Usage: page.sh PROGRAM PAGE. Prints
-# what differs; exit status 1 if anything does, 77 without python3.
+# The commands of a page, in its order, as one shell in an empty folder would run them: a block `sh` succeeds, or, where a
+# block `text` follows at once, prints that; `...` in it stands for any text or, alone on a line, any lines. Usage:
+# page.sh PROGRAM SOURCE_ROOT PAGE [LEFT_OUT], the last a pattern (grep -E) of commands that are not run. What the page has
+# in /tmp is in a folder of its own. Prints what differs; exit status 1 if anything does, 77 without python3.
 set -euo pipefail
 command -v python3 >/dev/null || { echo "skipped: there is no python3"; exit 77; }
-program=$(readlink -f "$1") page=$(readlink -f "$2")
+program=$(readlink -f "$1") root=$2 page=$2/$3 left_out=${4-^$}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-mkdir "$folder/clone"
-cd "$folder/clone"
-ln -s "$program" sasbench
+mkdir "$folder/clone" "$folder/home" "$folder/tmp"
+for name in algorithms docs scenes; do
+    ln -s "$root/$name" "$folder/clone"
+done
+ln -s "$program" "$folder/clone/sasbench"
+printf 'cd %q\n' "$folder/clone" >"$folder/session"
 
 # Files 01.sh, 01.text, ...: the blocks.
 awk -v folder="$folder" '
@@ -21,10 +25,21 @@ awk -v folder="$folder" '
     }
     /^```/ { file = "/dev/null"; kind = "" }' "$page"
 
+# run BLOCK: with the folder and the variables that those before it left.
+run()
+{
+    # shellcheck disable=SC2016
+    HOME=$folder/home bash -ec '. "$0/session"
+        trap '\''{ printf "cd %q\n" "$PWD"; export -p; } >"$0/session"'\'' EXIT
+        . "$1"' "$folder" "$1"
+}
+
 blocks=0 compared=0
 for block in "$folder"/*.sh; do
     blocks=$((blocks + 1)) status=0
-    bash -e "$block" >"$folder/printed" 2>&1 </dev/null || status=$?
+    sed -i "s|/tmp/|$folder/tmp/|g" "$block"
+    grep -vE "$left_out" "$block" >"$block.run" || :
+    run "$block.run" >"$folder/printed" 2>&1 </dev/null || status=$?
     if [ ! -e "${block%.sh}.text" ]; then
         [ "$status" -eq 0 ] || { cat "$block" "$folder/printed"; echo "page: exit status $status"; exit 1; }
         continue
@@ -39,5 +54,6 @@ if not re.fullmatch(pattern, printed):
     sys.exit(f'page: the page shows:\n{shown}but this printed, below the commands:')
 END
 done
-[ "$compared" -gt 0 ] || { echo "page: $page shows nothing that could be compared"; exit 1; }
+[ "$blocks" -gt 0 ] || { echo "page: $page has no commands"; exit 1; }
+[ "$compared" -gt 0 ] || ! grep -q '^```text$' "$page" || { echo "page: nothing that $page shows could be compared"; exit 1; }
 echo "$blocks blocks, $compared compared with what the page shows"

@@ -66,7 +66,7 @@ static void header_is_public(void **state)
                            " plan, execute, work, destroy};\n");
     assert_shell("cc -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude alone.c", 0);
     assert_shell("c++ -std=c++11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude alone.cc", 0);
-    assert_shell("test $(wc -l <mine.c) -le 60 && test $(wc -l <meson.build) -le 3", 0);
+    assert_shell("test $(wc -l <mine.c) -le 60", 0);
 }
 
 /* The template's image is that of our own truncated sinc, with its counts, on two scenes, in every command. */
