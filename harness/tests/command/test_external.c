@@ -156,8 +156,8 @@ static void commands_are_read(void **state)
     assert_nothing_left();
 }
 
-/* An interpreter's adapter, where it is: its image is that of our own truncated sinc. The test of docs/plugins.md holds its
-   promises. */
+/* An interpreter's adapter, where it is: its image is that of our own truncated sinc. The test of docs/plugins.md holds
+   its promises. */
 static void assert_adapter(const char *check, const char *command)
 {
     struct csv csv;
