@@ -449,7 +449,7 @@ class Python(unittest.TestCase):
             quick = sasbench.scene("study/quick")
             echoes = sasbench.simulate(quick)
             before = sasbench.image(quick, "bp_sinc", echoes)
-            large = sasbench.make(quick.acquisition, sasbench.Grid(-2, 0.002, 2000, 18, 0.003, 2000))
+            large = sasbench.make(quick.acquisition, sasbench.Grid(-2, 0.001, 4000, 18, 0.001, 6000))
             def form():
                 try:
                     sasbench.image(large, "reference", echoes)
