@@ -68,13 +68,13 @@ struct row_tables TABLES_BEGIN(const struct bp_row *row);
 #define TABLES_MAKE REAL_ISA_NAME(bp_tables_make)
 void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *chunk);
 
-/* Add a chunk with its tables to all columns of its residues. */
+/* Add a chunk with its tables to all columns of its residues; of branches the same chunk of `rows` image rows. */
 #define SUMS_ADD REAL_ISA_NAME(bp_sums_add)
-void SUMS_ADD(struct chunk *chunk);
+void SUMS_ADD(struct chunk *chunks, int rows);
 
 /* The same of Farrow branches. */
 #define BRANCHES_ADD REAL_ISA_NAME(bp_branches_add)
-void BRANCHES_ADD(const struct chunk *chunk);
+void BRANCHES_ADD(const struct chunk *chunks, int rows);
 
 /* `count` rounded up to whole vectors. */
 static inline int whole_vectors(int count)

@@ -126,22 +126,28 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
     struct bp_slab slab = in->slab;
     slab.re = in->slab_re;
     slab.im = in->slab_im;
-#pragma omp parallel for schedule(dynamic, ROWS_SUMMED)
-    for (int i = window.row; i < window.row + window.rows; i++) {
-        char *re = (char *)in->sums[k] + (size_t)(i - window.row) * values * size;
-        const struct bp_row row = {.medium = &bp->medium,
-                                   .table = &bp->table,
-                                   .raster = &in->rasters[k],
-                                   .slab = &slab,
-                                   .r = grid->r_first + i * grid->r_step,
-                                   .receivers = count,
-                                   .offsets = in->offsets + first,
-                                   .scratch = &in->scratch[omp_get_thread_num()],
-                                   .re = re,
-                                   .im = re + half * size,
-                                   .stride = in->strides[k]};
-        if (progress_step())
-            in->row(&row);
+    const int together = in->rasters[k].rows, end = window.row + window.rows;
+#pragma omp parallel for schedule(dynamic, (ROWS_SUMMED + together - 1) / together)
+    for (int row = window.row; row < end; row += together) {
+        struct bp_row rows[BP_ROWS_MOST];
+        int taken = 0;
+        for (int i = row; i < end && i < row + together; i++) {
+            char *re = (char *)in->sums[k] + (size_t)(i - window.row) * values * size;
+            rows[taken] = (struct bp_row){.medium = &bp->medium,
+                                          .table = &bp->table,
+                                          .raster = &in->rasters[k],
+                                          .slab = &slab,
+                                          .r = grid->r_first + i * grid->r_step,
+                                          .receivers = count,
+                                          .offsets = in->offsets + first,
+                                          .scratch = &in->scratch[omp_get_thread_num() * in->rows + taken],
+                                          .re = re,
+                                          .im = re + half * size,
+                                          .stride = in->strides[k]};
+            taken += progress_step();
+        }
+        if (taken > 0)
+            in->row(rows, taken);
     }
 }
 

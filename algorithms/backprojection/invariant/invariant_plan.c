@@ -261,7 +261,7 @@ struct lengths {
     double samples; /* of a record that a row reads */
 };
 
-/* One thread's scratch, from the arena. */
+/* One row's scratch, from the arena. */
 static struct bp_row_scratch scratch_take(struct arena *arena, const struct lengths *lengths, size_t real_bytes)
 {
     const size_t row = lengths->row, entries = lengths->entries, taps = lengths->taps;
@@ -342,6 +342,9 @@ static enum status plan_patch(struct bp *bp, const struct straight_track *track,
     struct bp_raster *raster = &in->rasters[k];
     raster_make(bp, track, grid, raster);
     raster->together = residues_together(bp, steepness(bp, raster, grid));
+    raster->rows = bp->table.branches > 1 ? BP_ROWS_MOST / raster_residues(raster) : 1;
+    raster->rows = raster->rows > 1 ? raster->rows : 1;
+    in->rows = raster->rows > in->rows ? raster->rows : in->rows;
     pieces_plan(bp, raster);
     const struct pixel_window w = problem_window(&bp->problem, k);
     /* Sums of branches are read and written for each shift: no vector of them crosses a cache line. */
@@ -377,19 +380,19 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
                           in->slab.receiver_stride);
     struct arena arena = {NULL, 0};
     scratch_take(&arena, lengths, size);
-    const size_t per_thread = arena.used;
+    const size_t per_scratch = arena.used, scratches = threads * (size_t)in->rows;
     const size_t rows = (size_t)in->receivers * in->slab_rows;
     const size_t run = bp->problem.window ? (size_t)(bp_pings_wanted(bp) + 2 * in->slab.lead) * size : 0;
     in->slab_re = bp_part_allocate(bp, values * size, rows, run);
     in->slab_im = bp_part_allocate(bp, values * size, rows, run);
     in->tile_bytes = (tile + 63) / 64 * 64;
     in->tiles = store_room(store, threads, in->tile_bytes, 1.0 / (double)threads);
-    in->tables = store_room(store, threads, per_thread, 1.0 / (double)threads);
-    in->scratch = store_room(store, threads, sizeof *in->scratch, 1.0 / (double)threads);
+    in->tables = store_room(store, scratches, per_scratch, 1.0 / (double)threads);
+    in->scratch = store_room(store, scratches, sizeof *in->scratch, 1.0 / (double)threads);
     if (store->failed)
         return status_set(STATUS_FAILED, "no memory for records of %d receivers", in->receivers);
     arena = (struct arena){in->tables, 0};
-    for (size_t t = 0; t < threads; t++)
+    for (size_t t = 0; t < scratches; t++)
         in->scratch[t] = scratch_take(&arena, lengths, size);
     return STATUS_OK;
 }

@@ -24,7 +24,8 @@ struct invariant {
     void *tiles;             /* [threads][tile_bytes]: complex [TILE][branches][shape.length]; of fine steps
                                        spectra [TILE][shape.pitch] and one step's values [TILE][shape.pitch] */
     size_t tile_bytes;
-    struct bp_row_scratch *scratch; /* [threads], all in `tables` */
+    int rows;                       /* raster.rows of any patch, at most */
+    struct bp_row_scratch *scratch; /* [threads][rows], all in `tables` */
     void *tables;
     int patch_count;
     int *strides; /* [patch_count] */

@@ -59,7 +59,8 @@
                      group of residues                                       sum_block
                        shift, tap, vector of columns                         sum_one, sum_two, sum_taps
                  of Farrow branches, block of columns         branches.c   BRANCHES_ADD
-                   shift of a group                                          sum_block
+                   shift of a group, of all rows that are                    sum_block, sum_rows_block
+                   summed together
                      residues that read one sample: a run                    add_run
                        vector of columns, residue, branch                    add_vectors
 
@@ -113,8 +114,8 @@ enum { BP_BLOCK_VECTORS = 5, BP_LANES_MOST = 16 };
 
 /* At most BP_TOGETHER residues are summed together; their samples of one shift lie at most BP_SPREAD apart where a
    value has more than two taps. With Farrow branches, at most BP_TOGETHER_BRANCHES; those that read the same sample are
-   summed together. */
-enum { BP_TOGETHER = 6, BP_SPREAD = 4, BP_TOGETHER_BRANCHES = 40 };
+   summed together, and those of up to BP_ROWS_MOST image rows where a row has so few residues. */
+enum { BP_TOGETHER = 6, BP_SPREAD = 4, BP_TOGETHER_BRANCHES = 40, BP_ROWS_MOST = 8 };
 
 /* Compressed traces of some receivers, pings contiguous: value (receiver g, row i, ping p) at
    [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard, a fine one where it is
@@ -147,6 +148,7 @@ struct bp_raster {
     struct pair_span shown;       /* wanted columns of a residue: blocks without any are left out */
     double limit;                 /* aperture limit */
     int stored;                   /* the first column with sums: blocks reach beyond the wanted ones */
+    int rows;                     /* image rows summed together: with Farrow branches and few residues, else 1 */
     int together; /* residues summed together at most, 2 for up to two taps, 1 for the nearest fine step */
     const struct piece_fit *fit;
     double reach, longest; /* of pieces: piece_reach, 0: each delay is evaluated; greatest half length in m */
@@ -174,7 +176,7 @@ struct bp_polynomial {
     double c[PIECE_POWERS], cycles;
 };
 
-/* Scratch of one thread. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings +
+/* Scratch of one row. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings +
    residue_columns) at the most; of one receiver and as many groups as fit into `capacity` >= the most
    residues of a group times BP_ENTRIES(pings + residue_columns). */
 struct bp_row_scratch {
@@ -211,13 +213,13 @@ struct bp_row {
     double r;                             /* m */
     int receivers;                        /* of the slab */
     const double *offsets;                /* [receivers] m ahead of the transmitter */
-    const struct bp_row_scratch *scratch; /* the calling thread's */
+    const struct bp_row_scratch *scratch; /* the calling thread's, of this row */
     void *re, *im; /* real [min(ratio, columns)][stride] sums: column rho + ratio j at [rho][j - stored] */
     int stride;    /* >= those columns + BP_LANES_MOST, the most of one vector */
 };
 
-/* Add the receivers to the row. */
-typedef void bp_row_function(const struct bp_row *row);
+/* Add the receivers to raster.rows neighbouring rows at most, which share all but r, scratch, re and im. */
+typedef void bp_row_function(const struct bp_row *rows, int count);
 
 ISA_DECLARE(bp_row_function, bp_row);
 

@@ -369,12 +369,12 @@ INLINE void sum_apart(const struct chunk *chunk, int taps)
 }
 #endif
 
-void SUMS_ADD(struct chunk *chunk)
+void SUMS_ADD(struct chunk *chunk, int rows)
 {
     const int taps = chunk->table->taps;
     const struct kernel *kernel = kernels;
     if (chunk->table->reading == BP_BRANCHES) {
-        BRANCHES_ADD(chunk);
+        BRANCHES_ADD(chunk, rows);
         return;
     }
     while (kernel->taps != 0 && kernel->taps != taps)
