@@ -126,7 +126,9 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
     struct bp_slab slab = in->slab;
     slab.re = in->slab_re;
     slab.im = in->slab_im;
-    const int together = in->rasters[k].rows, end = window.row + window.rows;
+    const int end = window.row + window.rows, threads = omp_get_max_threads();
+    const int share = (window.rows + threads - 1) / threads; /* of a thread: few rows are work for all */
+    const int together = in->rasters[k].rows < share ? in->rasters[k].rows : share;
 #pragma omp parallel for schedule(dynamic, (ROWS_SUMMED + together - 1) / together)
     for (int row = window.row; row < end; row += together) {
         struct bp_row rows[BP_ROWS_MOST];

@@ -48,7 +48,7 @@
        receivers, as many as fit the slab                       invariant.c  invariant_execute
          pass over the fine samples                                          the same; several only for large upsampled
                                                                              traces
-           patch; image row, by one thread each                              sum_rows
+           patch; image row, or several, by one thread each                  sum_rows
              receiver of the slab                               row.c        BP_ROW
                groups of neighbouring residues, as many as                   the same
                `capacity` holds: a chunk
