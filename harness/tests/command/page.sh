@@ -2,10 +2,12 @@
 # The commands of a page, in its order, as one shell in an empty folder would run them: a block `sh` succeeds, or, where a
 # block `text` follows at once, prints that; `...` in it stands for any text or, alone on a line, any lines. Usage:
 # page.sh PROGRAM SOURCE_ROOT PAGE [LEFT_OUT], the last a pattern (grep -E) of commands that are not run. What the page has
-# in /tmp is in a folder of its own. Prints what differs; exit status 1 if anything does, 77 without python3.
+# in /tmp is in a folder of its own. Prints what differs; exit status 1 if anything does, 77 without python3
+# or the numpy that the page's commands need.
 set -euo pipefail
 command -v python3 >/dev/null || { echo "skipped: there is no python3"; exit 77; }
 program=$(readlink -f "$1") root=$2 page=$2/$3 left_out=${4-^$}
+! grep -q 'python3 ' "$page" || python3 -c 'import numpy' 2>/dev/null || { echo "skipped: python3 has no numpy"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 mkdir "$folder/clone" "$folder/home" "$folder/tmp"
