@@ -26,6 +26,7 @@ STEPS = {
     'rma_wu': ['compress', 'broadside delays, block by block', 'sum receivers', 'Stolt', 'inverse FFT'],
     'rma_numeric': ['compress', 'exact phase, block by block', 'sum receivers', 'Stolt', 'inverse FFT'],
     'rma_delay': ['compress', 'delay each receiver by range', 'few terms a wavenumber', 'Stolt', 'inverse FFT'],
+    'rma_chirp': ['compress', 'delay each receiver by range', 'few terms a wavenumber', 'chirp transforms', 'inverse FFT'],
     'wk_classic': ['compress', 'unfold wavenumbers', 'Stolt', 'inverse FFT'],
     'wk_squint': ['compress, remove centroid', 'turn the axes', 'interpolate azimuth, range', 'inverse FFT'],
     'wk_polar': ['compress', 'polar-format filter', 'Stolt', 'inverse FFT'],

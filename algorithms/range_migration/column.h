@@ -48,4 +48,7 @@ void REAL_ISA_NAME(rma_receivers)(struct workspace *w, int p, real *cuts);
    imaginary ones. */
 void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch, const real *z, real *stored);
 
+/* The same rows from the bins of F, by chirp transforms. */
+void REAL_ISA_NAME(rma_chirp_rows)(struct workspace *w, const struct rma_patch *patch, const real *z, real *stored);
+
 #endif

@@ -204,7 +204,8 @@ static void column(struct workspace *w, const real *samples, real *stored)
     spectrum(w, w->rma->delay ? samples : cut, z);
     stage_end(w, RMA_RECONSTRUCT);
     for (int p = 0; p < swath->patch_count; p++)
-        REAL_ISA_NAME(rma_stolt)(w, &swath->patches[p], z, stored + 2 * swath->patches[p].row);
+        (w->rma->method.chirps ? REAL_ISA_NAME(rma_chirp_rows) : REAL_ISA_NAME(rma_stolt))(
+            w, &swath->patches[p], z, stored + 2 * swath->patches[p].row);
 }
 
 /* Rows of `count` wavenumbers, `stride` reals apart, side by side in `focused`. */

@@ -71,7 +71,9 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
         const struct rma_patch *patch = &swath->patches[k];
         double rows = patch->grid.r_count,
                points = patch->length * patch->step * 2 * rma->fs / rma->setting.sound_speed;
-        flops += q * (points * (4.0 * rma->taps + 8) + fft_flops(patch->length));
+        flops += q
+                 * (rma->method.chirps ? chirp_flops(rma, swath, patch)
+                                       : points * (4.0 * rma->taps + 8) + fft_flops(patch->length));
         flops +=
             rows
             * (patch->folds ? fft_flops(patch->columns) + 2 * q : 2 * fft_flops(patch->columns) + 6 * patch->columns);

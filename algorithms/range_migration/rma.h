@@ -32,7 +32,7 @@
 /* Settings of all methods; 0 where a method does not have one. */
 struct rma_options {
     int blocks;                             /* range blocks over all wanted rows; 0: by Eq. (13) and limit */
-    double limit;                           /* rad: the phase error that Eq. (13) accepts */
+    double limit;                           /* rad: the phase error that Eq. (13) accepts; that of rma_chirp's terms */
     int spacing, blend, stolt, sum, phases; /* indices into the choices of rma_params */
     int variant;                            /* enum rma_variant: of rma_lbf */
     int terms, taps;                        /* of rma_delay; taps: index into rma_delay_taps_names */
@@ -51,6 +51,7 @@ struct rma_method {
     const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
     double error_limit;     /* of the predicted error of an image */
     spectrum_function *spectrum;
+    bool chirps;     /* focuses by chirp transforms in place of Stolt's interpolation */
     int terms, taps; /* of delay compensation (delay_compensation.h), by the options; 0: conversion in blocks */
     /* The paper's FLOPs for M receivers (LBF21 Eqs. (20) to (22)): numbers[0] M + numbers[1] range transforms of
        1.5 N_a N_r log2 N_r, azimuth transforms alike, products of N_a N_r; interpolations of N_a N_r (2 taps - 1). */

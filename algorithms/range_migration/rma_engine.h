@@ -45,10 +45,18 @@
                  in two steps where receivers are even (rma_fold)
    stolt         begins with the zeros and the FFT of reconstruct
 
+   Chirp transforms (rma_chirp) have no stage `stolt`:
+
+   focus         [stolt_length] bins of F -> [r_count] rows of each patch, by `piece` rows
+                 K is a straight line over the bins, and x/r of what it leaves: of the line the rows are a chirp z
+                 transform of `length`; exp(j x) is a sum of terms of powers, the bins' times the rows', and each term
+                 is one such transform. Each wavenumber has as many terms as it needs. Few rows are sums instead
+
    Shortcuts: a single receiver at the transmitter needs no bulk and no differential. */
 #ifndef SASBENCH_RANGE_MIGRATION_RMA_ENGINE_H
 #define SASBENCH_RANGE_MIGRATION_RMA_ENGINE_H
 
+#include <complex.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -69,7 +77,9 @@ enum {
     RMA_NODES = 4,        /* blocks that blend at one range: a cubic */
     RMA_GUARD = 16,       /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024, /* of the Stolt kernel's table, linear inside each */
-    RMA_RUN = 16          /* samples of a record that share the taps of their delay */
+    RMA_RUN = 16,         /* samples of a record that share the taps of their delay */
+    CHIRP_ROWS = 16,      /* that are turned one by one from an exact phase */
+    CHIRP_TERMS = 12      /* of a chirp transform, at most: more cost float its digits */
 };
 
 /* Scratch of a thread; all but the first two hold values of the plan's precision. The largest swath counts. */
@@ -90,6 +100,10 @@ enum rma_buffer {
     RMA_TURNS,       /* real [RMA_CLASSES][receivers][2]: phasors of the receivers' offsets */
     RMA_EDGES,       /* complex [receivers][terms][row/LANES + 1]: U at the edges of vectors */
     RMA_MEMBERS,     /* struct rma_member [receivers] */
+    RMA_CHIRP,       /* complex [longest chirp transform, stolt_length]: the chirp, or the bins' step from row to row */
+    RMA_KERNEL,      /* complex [longest chirp transform]: its conjugate's transform */
+    RMA_LINE,        /* complex [stolt_length]: a term's bins */
+    RMA_SHARES,      /* real [stolt_length] */
     RMA_BUFFERS
 };
 
@@ -117,13 +131,15 @@ struct rma_line {
     double slowness;     /* s/m: delay over range, amid the bins: spectrum_slowness */
 };
 
-/* Oversampling of a swath by the transform that the Stolt interpolation reads. */
+/* Oversampling of a swath by the transform that the Stolt interpolation reads (chirp transforms: none). */
 #define RMA_OVERSAMPLING 1.5
 
 struct rma_patch {
     struct grid grid;
     int index;   /* among the problem's patches */
-    int length;  /* of the range IFFT onto the grid's rows: K = j 2 pi/(length step) */
+    int length;  /* of the range IFFT onto the grid's rows: K = j 2 pi/(length step); of the chirp transform */
+    int piece;   /* rows of a chirp transform */
+    bool sums;   /* rows of a piece one by one, without transforms */
     double step; /* m: the grid's r_step; a range bin for a single row */
     size_t row;  /* of its first row among all rows of the swath */
     /* azimuth: columns that divide the track's period evenly are bins of one transform (wavenumbers fold onto it);
@@ -133,6 +149,7 @@ struct rma_patch {
     double shift, square; /* cycles: wavenumber q is turned by (q - Q/2) shift + q^2 square */
     int *bins;            /* [columns of the swath] of the transform, by turn; `columns`: of none */
     void *kernel, *after; /* complex [columns] (chirp only), [x_count]: factors behind the focused rows */
+    void *chirp_plan;     /* forward, as long as focus_plan, of chirp transforms */
     void *focus_plan, *azimuth_forward, *azimuth_inverse; /* forward: chirp only */
 };
 
@@ -166,7 +183,7 @@ struct rma_swath {
     /* range: bin k is at (band_first + k) fs/length from fc */
     int length;                /* of the range transforms */
     int band_first, band, row; /* bins, and bins of a stored row (a multiple of the vector) */
-    int stolt_length;          /* of the transform that is interpolated: the samples fill 2/3 of it */
+    int stolt_length;          /* of the transform that is interpolated: the samples fill 2/3 of it, or all */
     int held;                  /* delay compensation: samples of a row, from `begin` on */
 
     int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
@@ -231,9 +248,13 @@ struct rma {
 
     struct rma_delay *delay; /* NULL: by blocks */
 
-    int taps;     /* of the Stolt interpolation */
-    double shape; /* the Kaiser kernel's parameter */
-    void *kernel; /* real [RMA_INTERVALS + 2][taps] */
+    /* rad: the largest |x| for which `terms` terms of exp(j x) err by the setting `limit` */
+    double chirp_phases[CHIRP_TERMS + 1];
+
+    double oversampling; /* RMA_OVERSAMPLING, or 1 */
+    int taps;            /* of the Stolt interpolation */
+    double shape;        /* the Kaiser kernel's parameter */
+    void *kernel;        /* real [RMA_INTERVALS + 2][taps] */
 
     int patch_count, swath_count;
     struct rma_patch *patches; /* [patch_count] by range */
@@ -314,6 +335,29 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
+
+/* ---- chirp_plan.c ---- */
+
+/* Focusing at one wavenumber: bins first + n at fc + (first + n) bin Hz, n < count, where
+   K = start + n slope + extreme e_n, |e_n| <= 1. */
+struct chirp {
+    int first, count;
+    double bin;
+    double start, slope, extreme; /* rad/m */
+    double reach;                 /* m: from a piece's first row to the one that its phases count from */
+    int terms;                    /* exp(j extreme reach e_n y_i) = sum of factors[t] (e_n y_i)^t, |y_i| <= 1 */
+    double complex factors[CHIRP_TERMS];
+};
+
+/* Fills rma->chirp_phases. */
+void chirp_phases(struct rma *rma);
+/* Piece and length of a patch, by the fewest FLOPs; length 0: too long. */
+void chirp_lay(const struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch);
+/* False if the wavenumber has no bins. */
+bool chirp_find(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch,
+                const struct rma_line *line, struct chirp *chirp);
+/* FLOPs of a wavenumber, the mean of some. */
+double chirp_flops(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch);
 
 /* ---- delay_fold.c ---- */
 

@@ -131,7 +131,10 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         const double rows = patch->grid.r_count;
-        cost[MIGRATION_FOCUS] += kept * patch->length * (1 + rma->taps / 8.0) + rows * patch->columns;
+        cost[MIGRATION_FOCUS] += rma->method.chirps
+                                     ? all * chirp_flops(rma, swath, patch) * patch->length / fft_flops(patch->length)
+                                     : kept * patch->length * (1 + rma->taps / 8.0);
+        cost[MIGRATION_FOCUS] += rows * patch->columns;
     }
 }
 
@@ -154,7 +157,8 @@ static enum status settings_errors(const struct problem *problem, const struct r
                           : !view.converts ? 0
                           : lawless        ? INFINITY
                                            : BLOCK_SHARE * options->limit;
-    error[CAUSE_STOLT] = STOLT_SHARE * kaiser_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
+    error[CAUSE_STOLT] =
+        method->chirps ? options->limit : STOLT_SHARE * kaiser_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
     error[CAUSE_FLOAT] = ROUNDING[problem->precision];
     return isnan(error[CAUSE_DELAYS]) || isnan(error[CAUSE_BLOCKS])
                ? status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", method->name)

@@ -256,9 +256,9 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->t_first = rma->t0 + from / rma->fs;
     swath->centre = (int)((to - from) / 2);
     swath->length = fft_length_fast((long long)(to - from) + 1 + RMA_GUARD);
-    swath->stolt_length = fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
+    swath->stolt_length = fft_length_fast((long long)(rma->oversampling * swath->length));
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
-        return too_long(rma, swath, RMA_OVERSAMPLING * (to - from));
+        return too_long(rma, swath, rma->oversampling * (to - from));
 
     /* The tapers' smear beyond the pulse's band is part of it. */
     int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
@@ -293,8 +293,9 @@ static enum status swath_samples(const struct rma *rma, struct rma_swath *swath)
     swath->row = (swath->held + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
     /* Rows a power of two apart would share some sets of the cache. */
     swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
-    /* As much to either side of `centre` as lies behind it. */
-    swath->stolt_length = fft_length_fast((long long)ceil(RMA_OVERSAMPLING * 2 * (swath->held - swath->centre)));
+    /* As much to either side of `centre` as lies behind it; for chirp transforms, the rows beside the record too. */
+    if (!rma->method.chirps)
+        swath->stolt_length = fft_length_fast((long long)ceil(rma->oversampling * 2 * (swath->held - swath->centre)));
     return STATUS_OK;
 }
 
@@ -307,6 +308,8 @@ static enum status swath_patches(const struct rma *rma, struct rma_swath *swath)
         patch->step = patch->grid.r_count > 1 ? patch->grid.r_step : bin;
         double rows = fmax(ceil(extent / patch->step), patch->grid.r_count);
         patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
+        if (rma->method.chirps)
+            chirp_lay(rma, swath, patch);
         double columns = swath->period * fabs(rma->spacing) / patch->grid.x_step, whole = floor(columns + 0.5);
         patch->folds = fabs(columns - whole) <= EVEN * whole && whole >= patch->grid.x_count && whole <= INT_MAX
                        && fft_length((long long)whole) == whole;
@@ -325,8 +328,10 @@ static enum status lay_swaths(struct rma *rma)
 {
     static enum status (*const steps[])(const struct rma *, struct rma_swath *) = {swath_azimuth, swath_range,
                                                                                    swath_samples, swath_patches};
+    rma->oversampling = rma->method.chirps ? 1 : RMA_OVERSAMPLING;
     rma->taps = stolt_taps[rma->options.stolt];
     rma->shape = kaiser_shape(rma->taps, RMA_OVERSAMPLING);
+    chirp_phases(rma);
     rma->block_list =
         store_take(&rma->store, (size_t)rma->block_count * (size_t)rma->swath_count, sizeof *rma->block_list, 0);
     if (!rma->block_list)
@@ -390,10 +395,11 @@ static void lay_scratch(struct rma *rma)
     size_t most[RMA_BUFFERS] = {[RMA_RECORD] = record, [RMA_TRANSFORMED] = record};
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         size_t row = 2 * (size_t)s->row * real_bytes, stolt = (size_t)s->stolt_length, needed = (size_t)s->needed;
-        size_t longest = stolt, terms = rma->delay ? (size_t)rma->delay->terms.terms : 0;
+        size_t longest = stolt, chirps = 0, terms = rma->delay ? (size_t)rma->delay->terms.terms : 0;
         for (int k = 0; k < s->patch_count; k++) {
             size_t length = (size_t)s->patches[k].length;
             longest = length > longest ? length : longest;
+            chirps = rma->method.chirps && length > chirps ? length : chirps;
         }
         const size_t bytes[RMA_BUFFERS] = {
             [RMA_RAMPS] = (1 + needed) * (size_t)rma->groups * sizeof(struct rma_ramp),
@@ -410,6 +416,10 @@ static void lay_scratch(struct rma *rma)
             [RMA_TURNS] = rma->delay ? 2 * RMA_CLASSES * receivers * real_bytes : 0,
             [RMA_EDGES] = receivers * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
             [RMA_MEMBERS] = rma->delay ? receivers * sizeof(struct rma_member) : 0,
+            [RMA_CHIRP] = chirps > 0 ? 2 * (chirps > stolt ? chirps : stolt) * real_bytes : 0,
+            [RMA_KERNEL] = 2 * chirps * real_bytes,
+            [RMA_LINE] = chirps > 0 ? 2 * stolt * real_bytes : 0,
+            [RMA_SHARES] = chirps > 0 ? stolt * real_bytes : 0,
         };
         for (int k = 0; k < RMA_BUFFERS; k++)
             most[k] = bytes[k] > most[k] ? bytes[k] : most[k];

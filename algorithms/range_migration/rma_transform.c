@@ -62,7 +62,7 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
     int taps = rma->taps, length = swath->stolt_length;
     for (int j = 0; j < length; j++) {
         double place = fmin(fabs((double)(j < length - length / 2 ? j : j - length) / length), 0.5 / RMA_OVERSAMPLING);
-        double transform = kaiser_transform(taps, rma->shape, place);
+        double transform = rma->method.chirps ? 1 : kaiser_transform(taps, rma->shape, place);
         apodization[j] = (real)(1 / (transform * (rma->delay ? 1 : swath->length)));
     }
 }
@@ -120,6 +120,8 @@ static void plan_swath(struct rma *rma, struct rma_swath *swath)
     swath->azimuth_forward = fft_strip(&rma->store, swath->period, LANES, lines, turned, FFTW_FORWARD);
     for (int k = 0; k < swath->patch_count; k++) {
         swath->patches[k].focus_plan = plan_line(rma, swath->patches[k].length, FFTW_BACKWARD);
+        if (rma->method.chirps)
+            swath->patches[k].chirp_plan = plan_line(rma, swath->patches[k].length, FFTW_FORWARD);
         azimuth_fill(rma, swath, &swath->patches[k]);
     }
 }

@@ -20,8 +20,8 @@ static const double OVER = 1.1;
 static const char PROMISE[] = OUTCOME_WARNING "condition promise: ";
 
 static const char *const specs[] = {"bp_farrow", "bp_farrow:error=1e-2", "bp_factorised", "bp_factorised:error=1e-3",
-                                    "rma_lbf", "rma_pca", "rma_wu", "rma_numeric", "rma_delay", "wk_classic",
-                                    "wk_squint", "auto:error=1e-2", "auto:error=1e-3",
+                                    "rma_lbf", "rma_pca", "rma_wu", "rma_numeric", "rma_delay", "rma_chirp",
+                                    "wk_classic", "wk_squint", "auto:error=1e-2", "auto:error=1e-3",
                                     /* These promise nothing of an error; their images must be numbers. */
                                     "bp_nearest", "bp_linear", "bp_sinc", "bp_zeropad", "bp_fitted", "wk_polar"};
 

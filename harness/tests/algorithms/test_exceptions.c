@@ -37,6 +37,7 @@ static const char *const specs[] = {
     "rma_wu",
     "rma_numeric",
     "rma_delay",
+    "rma_chirp",
     "wk_classic",
     "wk_classic:unfold=stuff,taps=4",
     "wk_squint",

@@ -224,7 +224,7 @@ static void refusals_name_the_unknown_beam(void **state)
 {
     (void)state;
     static const struct grid grid = {-0.1, 0.02, 11, 19.9, 0.025, 9, 0};
-    static const char *const specs[] = {"rma_lbf", "rma_pca", "rma_wu", "rma_numeric", "rma_delay"};
+    static const char *const specs[] = {"rma_lbf", "rma_pca", "rma_wu", "rma_numeric", "rma_delay", "rma_chirp"};
     struct vector offset[RECEIVERS] = {{0, 0, 0}};
     for (size_t k = 0; k < sizeof specs / sizeof *specs; k++)
         for (int known = 0; known < 2; known++) {

@@ -40,7 +40,7 @@ static const struct seam_case {
      6,
      3e-3,
      0.5,
-     {"rma_delay", "rma_lbf:blocks=2", "rma_pca", "bp_factorised:error=1e-3,stages=2"}},
+     {"rma_delay", "rma_lbf:blocks=2", "rma_chirp", "bp_factorised:error=1e-3,stages=2"}},
     {"beam with sharp ends",
      SONAR EIGHT "track = { speed = 2.5; pri = 0.064; pings = 126; x_first = -10.0; };\n" RECORD SHARP ACROSS
                  "image = { " COLUMNS("-9.5", "951"),

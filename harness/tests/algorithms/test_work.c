@@ -115,6 +115,7 @@ static void transforms_are_counted(void **state)
         {"study/quick", "rma_wu", 0, {0.6745, 0.67}},
         {"study/quick", "rma_numeric", 0, {0.6745, 0.67}},
         {"study/quick", "rma_delay", 0, {0.55, 0.525}},
+        {"study/quick", "rma_chirp", 0, {0.36, 0.36}},
         {"gate/squint", "wk_classic", 0, {0.82, 0.817}},
         {"gate/squint", "wk_squint", 0, {0.66, 0.6575}},
         {"gate/squint", "wk_polar", 0, {0.846, 0.844}},
