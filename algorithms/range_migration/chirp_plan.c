@@ -55,8 +55,8 @@ static bool line_fit(const struct rma *rma, const struct rma_swath *swath, const
 {
     enum { CHECKS = 8 };
     const double fc = rma->setting.fc, bin = rma->fs / swath->length;
-    const double lowest = fmax(swath->band_first, -(swath->length / 2)) * bin;
-    const double highest = fmin(swath->band_first + swath->band - 1, (swath->length - 1) / 2) * bin;
+    const double lowest = fmax(swath->band_first - RMA_GUARD, -(swath->length / 2)) * bin;
+    const double highest = fmin(swath->band_first + swath->band - 1 + RMA_GUARD, (swath->length - 1) / 2) * bin;
     double k[CHECKS + 1];
     chirp->bin = rma->fs / swath->stolt_length;
     chirp->first = (int)fmax(ceil(fmax(lowest, line->lowest - fc) / chirp->bin), -(swath->stolt_length / 2));
@@ -96,7 +96,7 @@ bool chirp_find(const struct rma *rma, const struct rma_swath *swath, const stru
 /* Bins of the widest band. */
 static int bins_most(const struct rma_swath *swath)
 {
-    const double bins = (double)swath->band * swath->stolt_length / swath->length;
+    const double bins = (swath->band + 2.0 * RMA_GUARD) * swath->stolt_length / swath->length;
     return (int)fmin(ceil(bins) + 1, swath->stolt_length);
 }
 
