@@ -97,18 +97,15 @@ static void line_fill(const struct rma *rma, const struct bins *bins, const real
     }
 }
 
-/* rows += factor y^t values, y from -1 to 1. */
-static void add_term(const real *restrict values, int rows, double middle, int t, double complex factor,
+/* sums += factor powers values; the powers of y, from -1 to 1, go on to the next. */
+static void add_term(const real *restrict values, int rows, double middle, double complex factor, real *restrict powers,
                      real *restrict sums)
 {
     const real re = (real)creal(factor), im = (real)cimag(factor), to_y = middle > 0 ? (real)(1 / middle) : 0;
     for (int i = 0; i < rows; i++) {
-        const real y = ((real)i - (real)middle) * to_y;
-        real power = 1;
-        for (int k = 0; k < t; k++)
-            power *= y;
-        sums[2 * i] += power * (re * values[2 * i] - im * values[2 * i + 1]);
-        sums[2 * i + 1] += power * (re * values[2 * i + 1] + im * values[2 * i]);
+        sums[2 * i] += powers[i] * (re * values[2 * i] - im * values[2 * i + 1]);
+        sums[2 * i + 1] += powers[i] * (re * values[2 * i + 1] + im * values[2 * i]);
+        powers[i] *= ((real)i - (real)middle) * to_y;
     }
 }
 
@@ -142,9 +139,12 @@ static void piece_fill(struct workspace *w, const struct rma_patch *patch, const
     const int count = chirp->count, length = patch->length;
     const double middle = (patch->piece - 1) / 2.0, cycles = chirp->start * patch->step / (2 * M_PI);
     const real *chirps = buffer(w, RMA_CHIRP), *kernel = buffer(w, RMA_KERNEL), *shares = buffer(w, RMA_SHARES);
+    real *powers = (real *)buffer(w, RMA_SHARES) + w->swath->stolt_length;
     real *line = buffer(w, RMA_LINE), *wave = buffer(w, RMA_WAVE), *turned = buffer(w, RMA_TRANSFORMED);
     memset(sums, 0, 2 * (size_t)rows * sizeof *sums);
     multiply(chirps, count, line);
+    for (int i = 0; i < rows; i++)
+        powers[i] = 1;
     for (int t = 0; t < chirp->terms; t++) {
         for (int n = 0; t > 0 && n < count; n++) {
             line[2 * n] *= shares[n];
@@ -155,7 +155,7 @@ static void piece_fill(struct workspace *w, const struct rma_patch *patch, const
         FFTW(execute_dft)(patch->chirp_plan, (complex_real *)wave, (complex_real *)turned);
         multiply(kernel, length, turned);
         FFTW(execute_dft)(patch->focus_plan, (complex_real *)turned, (complex_real *)wave);
-        add_term(wave, rows, middle, t, chirp->factors[t], sums);
+        add_term(wave, rows, middle, chirp->factors[t], powers, sums);
     }
     multiply(chirps, rows, sums);
 #pragma omp simd

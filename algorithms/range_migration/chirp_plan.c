@@ -148,7 +148,7 @@ void chirp_lay(const struct rma *rma, const struct rma_swath *swath, struct rma_
         if (piece == next.piece)
             continue;
         next.piece = piece;
-        next.length = fft_length_fast((long long)piece + bins_most(swath));
+        next.length = fft_length_quick((long long)piece + bins_most(swath));
         const double flops = line_flops(rma, swath, &next, &phase);
         if (phase > rma->chirp_phases[CHIRP_TERMS])
             continue;

@@ -103,7 +103,7 @@ enum rma_buffer {
     RMA_CHIRP,       /* complex [longest chirp transform, stolt_length]: the chirp, or the bins' step from row to row */
     RMA_KERNEL,      /* complex [longest chirp transform]: its conjugate's transform */
     RMA_LINE,        /* complex [stolt_length]: a term's bins */
-    RMA_SHARES,      /* real [stolt_length] */
+    RMA_SHARES,      /* real [stolt_length], e_n of struct chirp; [longest chirp transform], a power of y_i */
     RMA_BUFFERS
 };
 

@@ -419,7 +419,7 @@ static void lay_scratch(struct rma *rma)
             [RMA_CHIRP] = chirps > 0 ? 2 * (chirps > stolt ? chirps : stolt) * real_bytes : 0,
             [RMA_KERNEL] = 2 * chirps * real_bytes,
             [RMA_LINE] = chirps > 0 ? 2 * stolt * real_bytes : 0,
-            [RMA_SHARES] = chirps > 0 ? stolt * real_bytes : 0,
+            [RMA_SHARES] = chirps > 0 ? (stolt + chirps) * real_bytes : 0,
         };
         for (int k = 0; k < RMA_BUFFERS; k++)
             most[k] = bytes[k] > most[k] ? bytes[k] : most[k];
