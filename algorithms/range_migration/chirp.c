@@ -1,5 +1,5 @@
-/* Range migration at one azimuth wavenumber: the focusing of a patch's rows by chirp transforms (rma_engine.h). Compiled
-   once for each precision and instruction set (BP_ISA names it). */
+/* Range migration at one azimuth wavenumber: the focusing of a patch's rows by chirp transforms (rma_engine.h).
+   Compiled once for each precision and instruction set (BP_ISA names it). */
 #include <string.h>
 
 #include "range_migration/column.h"

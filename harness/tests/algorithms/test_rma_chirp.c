@@ -1,5 +1,5 @@
-/* Range migration by chirp transforms. Rows that are summed one by one prove the transforms: the same rows in patches of
-   three are the same image within `limit`. Against the exact image it is as good as rma_delay. */
+/* Range migration by chirp transforms. Rows that are summed one by one prove the transforms: the same rows in patches
+   of three are the same image within `limit`. Against the exact image it is as good as rma_delay. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
