@@ -406,7 +406,7 @@ static void check_answers_first(void **state)
     struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg")});
     assert_int_equal(outcome.status, 1);
     const char *verdict =
-        strstr(outcome.out, "scene: 14 of 17 algorithms take this scene; 0 warnings\n  REFUSED  one_re");
+        strstr(outcome.out, "scene: 15 of 18 algorithms take this scene; 0 warnings\n  REFUSED  one_re");
     assert_non_null(verdict);
     assert_holds(outcome.out, "cure: back projection or range migration (rma_*)");
     assert_holds(outcome.out, "           wk_classic, wk_squint, wk_polar\n");
