@@ -104,7 +104,7 @@ static int bins_most(const struct rma_swath *swath)
 static double line_flops(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch,
                          double *phase)
 {
-    enum { LOOKED_AT = 200 };
+    enum { LOOKED_AT = 64 };
     const int step = swath->wavenumbers / LOOKED_AT + 1, rows = patch->grid.r_count;
     const double transform = fft_flops(patch->length), reach = reach_of(patch),
                  pieces = ceil((double)rows / patch->piece);

@@ -128,12 +128,13 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
         cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * 8 * swath->needed : 0;
         cost[MIGRATION_FOCUS] += kept * swath->needed * sums * length;
     }
+    /* FLOPs of a value in a transform: half of a value's time, without a spectrum to split for the interpolation. */
+    const double of_value = fft_flops(swath->stolt_length) / swath->stolt_length;
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         const double rows = patch->grid.r_count;
-        cost[MIGRATION_FOCUS] += rma->method.chirps
-                                     ? all * chirp_flops(rma, swath, patch) * patch->length / fft_flops(patch->length)
-                                     : kept * patch->length * (1 + rma->taps / 8.0);
+        cost[MIGRATION_FOCUS] += rma->method.chirps ? all * chirp_flops(rma, swath, patch) / of_value / 2
+                                                    : kept * patch->length * (1 + rma->taps / 8.0);
         cost[MIGRATION_FOCUS] += rows * patch->columns;
     }
 }

@@ -6,7 +6,7 @@
 
 static const double DOUBLE = 2 * sizeof(double), FLOAT = 2 * sizeof(float); /* of a complex number */
 /* Measured on Debian 12: a simulation of few echoes, whose image is written. */
-static const double PROGRAM = 17e6;
+static const double PROGRAM = 18.5e6;
 static const double READER = 10e6; /* buffers of the process that reads an echo file in part */
 
 double process_bytes(const struct problem *problem, double plan_bytes)
