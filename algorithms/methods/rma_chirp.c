@@ -33,7 +33,6 @@ static const struct rma_method method = {
 };
 
 static const struct candidate_family candidates[] = {
-    {"taps=8,limit=1e-4", "terms", "1 2"},
     {"limit=1e-4", "terms", "2"},
     {.fixed = NULL},
 };
