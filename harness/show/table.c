@@ -212,8 +212,8 @@ static void text_print(FILE *stream, const char *before, const char *text)
     print_wrapped(stream, 4, shown);
 }
 
-/* "warning: condition ghost: ..." becomes ghost, "warning: target 5: ..." becomes target 5; others
-   have no name. */
+/* "warning: condition ghost: ..." becomes ghost, "warning: target 5: ..." becomes target 5 not measured; others have no
+   name. */
 static void warned_names(char *text, size_t size)
 {
     static const char *const before[] = {OUTCOME_WARNING, "condition "};
@@ -224,7 +224,8 @@ static void warned_names(char *text, size_t size)
             name += strncmp(name, before[k], strlen(before[k])) == 0 ? strlen(before[k]) : 0;
         const size_t length = strcspn(name, ":\n");
         if (name[length] == ':')
-            text_append(text, size, "%s%.*s", *text ? ", " : "", (int)length, name);
+            text_append(text, size, "%s%.*s%s", *text ? ", " : "", (int)length, name,
+                        strncmp(name, "target ", strlen("target ")) == 0 ? " not measured" : "");
     }
 }
 
