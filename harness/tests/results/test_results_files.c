@@ -371,10 +371,10 @@ static void test_brief_table(void **state)
     table_scene_end(stream);
     unsetenv("COLUMNS");
     fclose(stream);
-    assert_string_equal(text,
-                        "one                       2 images, 1 refused, warned: motion, ghost, target 5 not measured\n"
-                        "  two: bp_sinc\n    failed: no memory\n"
-                        "two                       0 images, 1 failed\n");
+    assert_string_equal(text, "one                       2 images, 1 refused, warned: motion, ghost, target 5\n"
+                              "not measured\n"
+                              "  two: bp_sinc\n    failed: no memory\n"
+                              "two                       0 images, 1 failed\n");
 }
 
 int main(void)
