@@ -20,7 +20,7 @@ rma_pca           #cc79a7     11     10    2
 rma_wu            #8c8c00      9      8    4
 rma_numeric       #a50026     11     10    5
 rma_delay         #01665e      9      8    1
-rma_chirp         #dfc27d     11     10    3
+rma_chirp         #c51b7d     11     10    3
 wk_classic        #35978f      1      1    2
 wk_squint         #bf812d      2      2    3
 wk_polar          #5e3c99      3      3    4
