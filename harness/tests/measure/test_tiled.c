@@ -134,7 +134,7 @@ static void refusals(void **state)
     (void)state;
     assert_refused("auto", 1e9, "but auto");
     assert_refused("bp_nearest", 1e5, "whole image of 0.16 MB");
-    assert_refused("bp_nearest", 41.3e6, "no tile fits");
+    assert_refused("bp_nearest", 42.8e6, "no tile fits");
 }
 
 int main(void)
