@@ -15,10 +15,7 @@
 #include "range_migration/rma.h"
 
 static const struct param params[] = {
-    {PARAM_NAMED(struct rma_options, taps, rma_delay_taps_names), .summary = "taps of the receivers' delays",
-     .initial = 2, .max = 3, .sweep = "8 16 24"},
-    {PARAM(struct rma_options, terms), .summary = "terms over the receivers for what the delays leave", .initial = 2,
-     .min = 1, .max = 3, .sweep = "1 2 3"},
+    RMA_DELAY_PARAMS,
     {PARAM(struct rma_options, limit), .summary = "largest error of a phasor by the chirp transforms", .initial = 1e-3,
      .min = 1e-12, .max = 0.1, .sweep = "1e-2 1e-3 1e-4"},
     {.name = NULL},

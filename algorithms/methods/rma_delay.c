@@ -8,10 +8,7 @@
 #include "range_migration/rma.h"
 
 static const struct param params[] = {
-    {PARAM_NAMED(struct rma_options, taps, rma_delay_taps_names), .summary = "taps of the receivers' delays",
-     .initial = 2, .max = 3, .sweep = "8 12 16 24"},
-    {PARAM(struct rma_options, terms), .summary = "terms over the receivers for what the delays leave", .initial = 2,
-     .min = 1, .max = 3, .sweep = "1 2 3"},
+    RMA_DELAY_PARAMS,
     {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names), .summary = "Kaiser taps of the Stolt interpolation",
      .initial = 2, .max = 4, .terse = true, .hidden = true},
     {.name = NULL},

@@ -4,35 +4,16 @@
 
 #include "range_migration/column.h"
 
-enum { SPAN = RMA_SPAN };
-
 /* Bins of F at one wavenumber, and the rows of one piece. */
 struct bins {
     const struct chirp *chirp;
-    double fc;                           /* Hz */
-    double half, beta, b1, to_k, weight; /* K = to_k sqrt(...) of spectrum_monostatic; of the cell, but for F/K^1.5 */
-    double to_row;                       /* cycles of K (rad/m) at the piece's middle */
-    double to_centre, to_first;          /* s: the samples' origin; cycles of a bin from the middle to the first row */
-    double shift;                        /* cycles: to the patch's columns */
+    double fc;                     /* Hz */
+    double half, beta, to_f, to_k; /* K = to_k sqrt(...), as spectrum_monostatic */
+    double to_row;                 /* cycles of K (rad/m) at the row that the phases count from */
+    double to_centre, to_first;    /* s: the samples' origin; cycles of a bin from that row to the first one */
+    double shift;                  /* cycles: to the patch's columns, and an eighth */
+    double weight;                 /* of the cell, but for F/K^1.5 */
 };
-
-/* K, rad/m, at `offset` Hz from fc. */
-static inline __attribute__((always_inline)) double wavenumber(const struct bins *b, double offset)
-{
-    const double f = (b->fc + offset) / b->b1, along = b->half + f * b->beta;
-    return b->to_k * sqrt((f - along) * (f + along));
-}
-
-static inline __attribute__((always_inline)) struct fit_cell bin_exact(const void *of, double n)
-{
-    const struct bins *b = of;
-    const struct chirp *chirp = b->chirp;
-    const double offset = (chirp->first + n) * chirp->bin, k = wavenumber(b, offset),
-                 bend = k - chirp->start - n * chirp->slope;
-    return (struct fit_cell){chirp->extreme > 0 ? bend / chirp->extreme : 0,
-                             k * b->to_row - offset * b->to_centre - n * b->to_first + b->shift,
-                             b->weight * (b->fc + offset) / (k * sqrt(k))};
-}
 
 /* exp(j 2 pi f) for any f. */
 static inline __attribute__((always_inline)) void turn(double f, real *c, real *s)
@@ -73,27 +54,21 @@ static void kernel_fill(const struct rma_patch *patch, const struct chirp *chirp
 }
 
 /* The bins of a piece, times their phases and weights, and the shares of the bend. */
-static void line_fill(const struct rma *rma, const struct bins *bins, const real *z_re, const real *z_im,
-                      real *restrict line, real *restrict shares)
+static void line_fill(const struct bins *b, const real *restrict re, const real *restrict im, real *restrict line,
+                      real *restrict shares)
 {
-    const int count = bins->chirp->count;
-    double share[SPAN], cycles[SPAN], weight[SPAN];
-    struct fit made, *fit = count > 1 && fit_make(&rma->fit, bin_exact, bins, 0, count - 1, &made) ? &made : NULL;
-    for (int n0 = 0; n0 < count; n0 += SPAN) {
-        const int n = count - n0 < SPAN ? count - n0 : SPAN;
-        const real *re = z_re + n0, *im = z_im + n0;
-        real *out = line + 2 * (size_t)n0;
-        fit_cells(fit, bin_exact, bins, n0, n, share, cycles, weight);
+    const struct chirp *chirp = b->chirp;
+    const double to_share = chirp->extreme > 0 ? 1 / chirp->extreme : 0;
 #pragma omp simd
-        for (int i = 0; i < n; i++) {
-            real c, s;
-            phasor((real)cycles[i], &c, &s);
-            c *= (real)weight[i];
-            s *= (real)weight[i];
-            out[2 * i] = re[i] * c - im[i] * s;
-            out[2 * i + 1] = re[i] * s + im[i] * c;
-            shares[n0 + i] = (real)share[i];
-        }
+    for (int n = 0; n < chirp->count; n++) {
+        const double offset = (chirp->first + n) * chirp->bin, f = (b->fc + offset) * b->to_f;
+        const double along = b->half + f * b->beta, k = b->to_k * sqrt((f - along) * (f + along));
+        const real weight = (real)(b->weight * (b->fc + offset) / (k * sqrt(k)));
+        real c, s;
+        turn(k * b->to_row - offset * b->to_centre - n * b->to_first + b->shift, &c, &s);
+        line[2 * n] = weight * (re[n] * c - im[n] * s);
+        line[2 * n + 1] = weight * (re[n] * s + im[n] * c);
+        shares[n] = (real)((k - chirp->start - n * chirp->slope) * to_share);
     }
 }
 
@@ -110,13 +85,13 @@ static void add_term(const real *restrict values, int rows, double middle, doubl
 }
 
 /* Rows one by one: each turns the bins by a step. */
-static void rows_add(const struct bins *bins, int rows, double step, real *restrict line, real *restrict steps,
-                     real *restrict sums)
+static void rows_add(const struct chirp *chirp, int rows, double step, const real *restrict shares, real *restrict line,
+                     real *restrict steps, real *restrict sums)
 {
-    const struct chirp *chirp = bins->chirp;
+    const double cycles = step / (2 * M_PI);
 #pragma omp simd
     for (int n = 0; n < chirp->count; n++)
-        turn(wavenumber(bins, (chirp->first + n) * chirp->bin) * step / (2 * M_PI), &steps[2 * n], &steps[2 * n + 1]);
+        turn((chirp->start + n * chirp->slope + chirp->extreme * shares[n]) * cycles, &steps[2 * n], &steps[2 * n + 1]);
     for (int i = 0; i < rows; i++) {
         real sum_re = 0, sum_im = 0;
 #pragma omp simd reduction(+ : sum_re, sum_im)
@@ -171,8 +146,8 @@ void REAL_ISA_NAME(rma_chirp_rows)(struct workspace *w, const struct rma_patch *
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
-    const struct spectrum_setting *monostatic = &rma->monostatic;
-    const double c = monostatic->sound_speed, beta = monostatic->speed / c, b1 = (1 - beta) * (1 + beta);
+    const double c = rma->monostatic.sound_speed, beta = rma->monostatic.speed / c, b1 = (1 - beta) * (1 + beta),
+                 to_k = 4 * M_PI / c;
     const int length = swath->stolt_length, all = patch->grid.r_count;
     struct chirp chirp;
     if (!chirp_find(rma, swath, patch, &w->line, &chirp)) {
@@ -188,18 +163,19 @@ void REAL_ISA_NAME(rma_chirp_rows)(struct workspace *w, const struct rma_patch *
             .fc = rma->setting.fc,
             .half = c * w->line.nu / 2,
             .beta = beta,
-            .b1 = b1,
-            .to_k = 4 * M_PI / c,
-            .weight = sqrt(c / 2) / (b1 * length) * pow(4 * M_PI / c, 1.5),
+            .to_f = 1 / b1,
+            .to_k = to_k,
+            .weight = sqrt(c / 2) * to_k * sqrt(to_k) / (b1 * length),
             .to_row = (patch->grid.r_first + row * patch->step + chirp.reach) / (2 * M_PI),
             .to_centre = swath->t_first + swath->centre / rma->fs,
             .to_first = chirp.slope * chirp.reach / (2 * M_PI),
-            .shift = rma_shift(swath, patch, w->q),
+            .shift = rma_shift(swath, patch, w->q) + 0.125,
         };
         const int rows = all - row < patch->piece ? all - row : patch->piece;
-        line_fill(rma, &bins, re, im, buffer(w, RMA_LINE), buffer(w, RMA_SHARES));
+        line_fill(&bins, re, im, buffer(w, RMA_LINE), buffer(w, RMA_SHARES));
         if (patch->sums)
-            rows_add(&bins, rows, patch->step, buffer(w, RMA_LINE), buffer(w, RMA_CHIRP), stored + 2 * (size_t)row);
+            rows_add(&chirp, rows, patch->step, buffer(w, RMA_SHARES), buffer(w, RMA_LINE), buffer(w, RMA_CHIRP),
+                     stored + 2 * (size_t)row);
         else
             piece_fill(w, patch, &chirp, rows, stored + 2 * (size_t)row);
     }

@@ -47,6 +47,15 @@ extern const char *const rma_stolt_names[], *const rma_delay_taps_names[];
 /* The parameters of methods that convert in blocks; from rma_params + 1 on without the variant. */
 extern const struct param rma_params[];
 
+/* The parameters of methods that compensate delays. */
+#define RMA_DELAY_PARAMS                                                                                               \
+    {PARAM_NAMED(struct rma_options, taps, rma_delay_taps_names), .summary = "taps of the receivers' delays",          \
+     .initial = 2, .max = 3, .sweep = "8 12 16 24"},                                                                   \
+    {                                                                                                                  \
+        PARAM(struct rma_options, terms), .summary = "terms over the receivers for what the delays leave",             \
+                                          .initial = 2, .min = 1, .max = 3, .sweep = "1 2 3"                           \
+    }
+
 struct rma_method {
     const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
     double error_limit;     /* of the predicted error of an image */

@@ -251,10 +251,9 @@ struct rma {
     /* rad: the largest |x| for which `terms` terms of exp(j x) err by the setting `limit` */
     double chirp_phases[CHIRP_TERMS + 1];
 
-    double oversampling; /* RMA_OVERSAMPLING, or 1 */
-    int taps;            /* of the Stolt interpolation */
-    double shape;        /* the Kaiser kernel's parameter */
-    void *kernel;        /* real [RMA_INTERVALS + 2][taps] */
+    int taps;     /* of the Stolt interpolation */
+    double shape; /* the Kaiser kernel's parameter */
+    void *kernel; /* real [RMA_INTERVALS + 2][taps] */
 
     int patch_count, swath_count;
     struct rma_patch *patches; /* [patch_count] by range */
@@ -351,7 +350,7 @@ struct chirp {
 
 /* Fills rma->chirp_phases. */
 void chirp_phases(struct rma *rma);
-/* Piece and length of a patch, by the fewest FLOPs; length 0: too long. */
+/* How a patch's rows are made, by the fewest FLOPs. */
 void chirp_lay(const struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch);
 /* False if the wavenumber has no bins. */
 bool chirp_find(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch,

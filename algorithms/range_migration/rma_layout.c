@@ -256,9 +256,10 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->t_first = rma->t0 + from / rma->fs;
     swath->centre = (int)((to - from) / 2);
     swath->length = fft_length_fast((long long)(to - from) + 1 + RMA_GUARD);
-    swath->stolt_length = fft_length_fast((long long)(rma->oversampling * swath->length));
+    const double longer = rma->method.chirps ? 1 : RMA_OVERSAMPLING;
+    swath->stolt_length = fft_length_fast((long long)(longer * swath->length));
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
-        return too_long(rma, swath, rma->oversampling * (to - from));
+        return too_long(rma, swath, longer * (to - from));
 
     /* The tapers' smear beyond the pulse's band is part of it. */
     int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
@@ -295,7 +296,7 @@ static enum status swath_samples(const struct rma *rma, struct rma_swath *swath)
     swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
     /* As much to either side of `centre` as lies behind it; for chirp transforms, the rows beside the record too. */
     if (!rma->method.chirps)
-        swath->stolt_length = fft_length_fast((long long)ceil(rma->oversampling * 2 * (swath->held - swath->centre)));
+        swath->stolt_length = fft_length_fast((long long)ceil(RMA_OVERSAMPLING * 2 * (swath->held - swath->centre)));
     return STATUS_OK;
 }
 
@@ -328,7 +329,6 @@ static enum status lay_swaths(struct rma *rma)
 {
     static enum status (*const steps[])(const struct rma *, struct rma_swath *) = {swath_azimuth, swath_range,
                                                                                    swath_samples, swath_patches};
-    rma->oversampling = rma->method.chirps ? 1 : RMA_OVERSAMPLING;
     rma->taps = stolt_taps[rma->options.stolt];
     rma->shape = kaiser_shape(rma->taps, RMA_OVERSAMPLING);
     chirp_phases(rma);
