@@ -6,6 +6,10 @@
 #include "backprojection/bp_engine.h"
 #include "backprojection/pairs/pairs.h"
 
+/* Noise up to this share of the echoes' energy is rounding: it lies beyond the band, where a part of a record errs by a
+   tenth of it. */
+static const double BEYOND = 1e-12;
+
 /* Rows have the samples at the delays, those that the taps reach, and one more for rounding to the nearest. */
 struct traces_form bp_records_form(struct bp *bp)
 {
@@ -18,12 +22,16 @@ struct traces_form bp_records_form(struct bp *bp)
     bp->medium.last = ceil(span.last);
     const int first = (int)fmax(0, bp->medium.first + table->first - 1);
     const int last = (int)fmin(end, bp->medium.last + table->first + taps + 1);
+    const struct acquisition *a = bp->problem.acquisition;
+    /* The plain path takes whole records. */
+    const bool limited = a->compressed && !(a->noise > BEYOND) && bp->medium.phase_limit > 0;
     return (struct traces_form){.upsample = table->upsample,
                                 .degree = table->branches - 1,
                                 .guard = table->guard,
                                 .preemphasis = table->preemphasis,
                                 .first = first,
-                                .count = last - first + 1};
+                                .count = last - first + 1,
+                                .band = limited ? a->bandwidth / a->fs : 0};
 }
 
 /* With AVX-512, too, 32 bytes at a time: values lie anywhere, and each store of 64 bytes would touch two cache
@@ -59,11 +67,12 @@ enum status bp_plan_traces(struct bp *bp)
 void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join)
 {
     const int all = bp->problem.acquisition->samples, from = bp->shape.from, end = from + bp->shape.read;
+    const int first = end > all ? end - all : 0, last = from < 0 ? all + from - 1 : all - 1; /* of those not around */
     char before[40] = "", behind[40] = "";
-    if (from > 0)
-        snprintf(before, sizeof before, "0-%d", from - 1);
-    if (end < all)
-        snprintf(behind, sizeof behind, "%d-%d", end, all - 1);
+    if (from > first)
+        snprintf(before, sizeof before, "%d-%d", first, from - 1);
+    if (end <= last)
+        snprintf(behind, sizeof behind, "%d-%d", end, last);
     if (*before || *behind)
         snprintf(text, room, "%ssamples %s%s%s of %d, which no pixel reads", join, before,
                  *before && *behind ? " and " : "", behind, all);

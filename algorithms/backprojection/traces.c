@@ -10,12 +10,26 @@
 
 #include "backprojection/farrow.h"
 #include "backprojection/planes.h"
+#include "common/bessel.h"
 #include "common/fft.h"
 #include "common/fft_length.h"
 #include "common/pulse_band.h"
 
+/* What a row is made of. */
+struct stretch {
+    int from, read; /* of the record (struct traces_shape) */
+    int length;     /* of the transform; 0: too long */
+    int fade;       /* of the samples read, at either end */
+};
+
+/* A Kaiser window down to 1e-15: its parameter, and its length times where its spectrum ends, in cycles. */
+static const double FADE_SHAPE = 32.1, FADE_EDGE = 10.3;
+
 struct traces {
     struct traces_shape shape;
+    struct stretch stretch;
+    int samples;                 /* of a record */
+    real *fading;                /* [stretch.fade] */
     bool transforms;             /* false: compressed already, and read as it is */
     FFTW(plan) forward, inverse; /* of L = shape.period, into another array: in place takes 1.2 times as long */
     complex_real *filter;        /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
@@ -103,6 +117,22 @@ static int convolved(const struct traces_shape *shape)
     return shape->guard < 15 ? count : (count + 15) / 16 * 16;
 }
 
+/* False without memory. */
+static bool fading_fill(struct traces *traces)
+{
+    const int count = traces->stretch.fade;
+    double sum = 0, all = 0;
+    traces->fading = store_room(&traces->store, (size_t)count, sizeof *traces->fading, 1);
+    for (int pass = 0; traces->fading && pass < 2; pass++, all = sum, sum = 0)
+        for (int k = 0; k <= count; k++) {
+            const double place = 2.0 * k / count - 1;
+            sum += bessel_i0(FADE_SHAPE * sqrt(1 - place * place));
+            if (pass > 0 && k < count)
+                traces->fading[k] = (real)(sum / all);
+        }
+    return traces->fading;
+}
+
 /* Filter, factors, scratch and FFTW's plans, and their counts in the shape. */
 static enum status transforms_plan(struct traces *traces, const struct acquisition *acquisition, bool preemphasis,
                                    int threads)
@@ -142,7 +172,8 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
         traces->forward = fft_line(store, length, a, a + pitch, FFTW_FORWARD);
         traces->inverse = fft_line(store, length, a, a + pitch, FFTW_BACKWARD);
     }
-    if (!traces->forward || !traces->inverse)
+    const bool faded = traces->stretch.fade == 0 || fading_fill(traces);
+    if (!faded || !traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
                           threads * (double)traces->each * sizeof(complex_real) / 1e6);
     shape->bytes += store->bytes;
@@ -161,28 +192,40 @@ static bool cuts(const struct acquisition *acquisition, const struct traces_form
     return form->count > 0 && (compresses || !transforms(acquisition, form));
 }
 
-static int period_of(const struct acquisition *acquisition, const struct traces_form *form)
+/* Whole records, or the part that alone a row depends on. */
+static struct stretch stretch_plain(const struct acquisition *acquisition, const struct traces_form *form)
 {
-    const int n = cuts(acquisition, form) ? form->count : acquisition->samples;
-    return acquisition->compressed ? n : fft_length_quick((long long)n + acquisition->pulse_length - 1);
+    const int pulse = acquisition->compressed ? 1 : acquisition->pulse_length;
+    const bool cut = cuts(acquisition, form);
+    const int from = cut ? form->first : 0, n = cut ? form->count : acquisition->samples;
+    return (struct stretch){.from = from,
+                            .read = (int)fmin(acquisition->samples - from, n + pulse - 1.0),
+                            .length = acquisition->compressed ? n : fft_length_quick((long long)n + pulse - 1)};
 }
 
-/* The samples of a record that are read, and those in a row. */
-static void shape_cut(const struct acquisition *acquisition, const struct traces_form *form, struct traces_shape *shape)
+/* Of a row with a band. */
+static struct stretch stretch_of(const struct acquisition *acquisition, const struct traces_form *form)
 {
-    const int all = acquisition->samples, pulse = acquisition->compressed ? 1 : acquisition->pulse_length;
-    shape->first = form->count > 0 ? form->first : 0;
-    shape->samples = form->count > 0 ? form->count : all;
-    shape->from = cuts(acquisition, form) ? shape->first : 0;
-    shape->read = all - shape->from;
-    if (cuts(acquisition, form) && shape->samples + pulse - 1 < shape->read)
-        shape->read = shape->samples + pulse - 1;
+    const struct stretch plain = stretch_plain(acquisition, form);
+    const int beside = form->degree > 0 ? reach_of(form->degree, form->upsample) : form->guard;
+    const double fade = ceil(2 * FADE_EDGE / (1 - form->band)), around = fade + beside / form->upsample + 1;
+    const bool between = form->upsample > 1 || form->degree > 0;
+    if (!(form->count > 0 && form->band > 0 && between && acquisition->compressed) || form->preemphasis
+        || !(form->count + 2 * around < acquisition->samples))
+        return plain;
+    const int from = form->first - (int)around, read = form->count + 2 * (int)around, length = fft_length_quick(read);
+    return length < acquisition->samples ? (struct stretch){from, read, length, (int)fade} : plain;
+}
+
+static int period_of(const struct acquisition *acquisition, const struct traces_form *form)
+{
+    return stretch_of(acquisition, form).length;
 }
 
 static double flops_of(const struct acquisition *acquisition, const struct traces_form *form, double *sums)
 {
-    const double length = period_of(acquisition, form);
-    const double planes = transformed(form->degree + 1) * form->upsample;
+    const struct stretch stretch = stretch_of(acquisition, form);
+    const double length = stretch.length, planes = transformed(form->degree + 1) * form->upsample;
     const int samples = form->count > 0 ? form->count : acquisition->samples;
     *sums = 0;
     if (!transforms(acquisition, form))
@@ -192,7 +235,7 @@ static double flops_of(const struct acquisition *acquisition, const struct trace
         *sums = 4 * taps * (form->degree - 1) * ((samples - 1.0) * form->upsample + 1);
     }
     const double product = planes > 1 ? form->upsample > 1 ? 6 : 2 : 0;
-    return (planes + 1) * fft_flops(length) + 6 * length + product * planes * length;
+    return 4.0 * stretch.fade + (planes + 1) * fft_flops(length) + 6 * length + product * planes * length;
 }
 
 static void destroy(void *made)
@@ -209,7 +252,8 @@ static enum status plan(const struct acquisition *acquisition, const struct trac
     *out = NULL;
     const int n = form->count > 0 ? form->count : acquisition->samples;
     const int upsample = form->upsample, branches = form->degree + 1;
-    const int length = period_of(acquisition, form);
+    const struct stretch stretch = stretch_of(acquisition, form);
+    const int length = stretch.length;
     long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * form->guard;
     if (length == 0 || fine * branches > INT_MAX / 4 || row * branches > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,
@@ -219,13 +263,18 @@ static enum status plan(const struct acquisition *acquisition, const struct trac
     struct traces *traces = calloc(1, sizeof *traces);
     if (!traces)
         return status_set(STATUS_FAILED, "no memory for range compression");
-    traces->shape = (struct traces_shape){.upsample = upsample,
+    traces->stretch = stretch;
+    traces->samples = acquisition->samples;
+    traces->shape = (struct traces_shape){.first = form->count > 0 ? form->first : 0,
+                                          .samples = n,
+                                          .from = stretch.from,
+                                          .read = stretch.read,
+                                          .upsample = upsample,
                                           .guard = form->guard,
                                           .branches = branches,
                                           .length = (int)row,
                                           .period = length,
                                           .bytes = sizeof *traces - sizeof traces->store};
-    shape_cut(acquisition, form, &traces->shape);
     double sums;
     traces->shape.flops = flops_of(acquisition, form, &sums);
     traces->shape.flops += sums;
@@ -250,10 +299,19 @@ static complex_real *scratch_of(const struct traces *traces, int thread)
 
 static void spectrum_fill(const struct traces *traces, int thread, const void *record, void *spectrum)
 {
-    const size_t n = (size_t)traces->shape.read, length = (size_t)traces->shape.period;
+    const struct stretch *stretch = &traces->stretch;
+    const size_t length = (size_t)traces->shape.period;
+    const int begin = stretch->from < 0 ? stretch->from + traces->samples : stretch->from;
+    const int left = traces->samples - begin, n = stretch->read < left ? stretch->read : left;
     complex_real *padded = scratch_of(traces, thread);
-    memcpy(padded, (const complex_real *)record + traces->shape.from, n * sizeof *padded);
-    memset(padded + n, 0, (length - n) * sizeof *padded);
+    const size_t count = (size_t)stretch->read;
+    memcpy(padded, (const complex_real *)record + begin, (size_t)n * sizeof *padded);
+    memcpy(padded + n, record, (count - (size_t)n) * sizeof *padded);
+    memset(padded + count, 0, (length - count) * sizeof *padded);
+    for (int k = 0; k < stretch->fade; k++) {
+        padded[k] *= traces->fading[k];
+        padded[stretch->read - 1 - k] *= traces->fading[k];
+    }
     FFTW(execute_dft)(traces->forward, padded, spectrum);
     traces->planes->filter(spectrum, traces->filter, length);
 }

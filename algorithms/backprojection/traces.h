@@ -15,6 +15,8 @@ struct traces_form {
     int guard;        /* upsampled samples before and behind the record */
     bool preemphasis; /* the spectrum is divided by sinc^2(f/fs), the loss of linear interpolation */
     int first, count; /* the samples [first, first + count) that a row holds; count 0: all */
+    double band;      /* > 0: compressed echoes hold nothing but |f| < band fs/2: a part of the record is enough for
+                         values between samples; 0: they depend on all of it */
 };
 
 /* A row holds guard + (samples - 1) upsample + 1 + guard values; value guard + i lies at sample coordinate first +
@@ -26,7 +28,11 @@ struct traces_form {
    If a row holds part of the record and its values depend on a stretch of it only, only that stretch is read. Raw
    echoes that are only compressed read a pulse's length behind the row's samples. The transform is shorter, and the
    values are the same but for rounding. Values between the samples (upsample > 1, degree > 0) or with preemphasis
-   depend on the whole record, which is transformed as one.
+   depend on the whole record, which is transformed as one. With a `band`, values between samples are made of the row's
+   samples and some beside them, over which the record fades to zero: by the running sum of a Kaiser window, whose
+   spectrum ends at (1 - band) fs/2, so that nothing in the band is aliased. (Raw echoes have flanks beyond any band;
+   those of a bright echo beside the row would reach into it.) Where a part is not shorter, and
+   with preemphasis, the whole record is read.
 
    Zero padding is done by phases: values i = n upsample + phase are the samples n of the signal phase/upsample samples
    earlier, hence an inverse transform of the record's own length L, of its spectrum times exp(j 2 pi nu
@@ -36,7 +42,7 @@ struct traces_shape {
     int upsample, guard;
     int branches;   /* 1, or degree + 1 */
     int length;     /* of a row's branch, complex values */
-    int from, read; /* the record's samples [from, from + read) are read */
+    int from, read; /* the record's samples [from, from + read) are read; of compressed echoes periodically */
     int period;     /* L: of the transformed signal, >= samples + pulse - 1 if raw; its sample 0 is `from` */
     size_t pitch;   /* from one spectrum or plane to the next, complex values: whole cache lines; 0: none is made */
     double flops;   /* for one record: 5 N log2 N an FFT, 6 a complex product, 2 a real one */

@@ -64,8 +64,9 @@ struct acquisition support_acquisition(int pings, int receivers, int samples)
     return a;
 }
 
-void support_noise(const struct acquisition *a, struct random *random, struct echoes *echoes)
+void support_noise(struct acquisition *a, struct random *random, struct echoes *echoes)
 {
+    a->noise = 1;
     CHECK(echoes_allocate(a, PRECISION_DOUBLE, echoes));
     for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
         ((double complex *)echoes->samples)[n] = random_normal(random);

@@ -21,7 +21,7 @@ void support_echoes(const struct scene *scene, struct echoes *echoes);
    0. To be freed. */
 struct acquisition support_acquisition(int pings, int receivers, int samples);
 /* Its echoes as noise, in double; to be freed. */
-void support_noise(const struct acquisition *acquisition, struct random *random, struct echoes *echoes);
+void support_noise(struct acquisition *acquisition, struct random *random, struct echoes *echoes);
 /* Records of 24 pings at fs = 30 kHz that are noise of a flat spectrum, bandwidth `band` fs: every frequency and, in an
    image about 21 m away, every place between samples count alike. To be freed. */
 void support_flat_noise(double band, struct acquisition *acquisition, struct echoes *echoes);
