@@ -28,11 +28,12 @@ struct traces_form {
    If a row holds part of the record and its values depend on a stretch of it only, only that stretch is read. Raw
    echoes that are only compressed read a pulse's length behind the row's samples. The transform is shorter, and the
    values are the same but for rounding. Values between the samples (upsample > 1, degree > 0) or with preemphasis
-   depend on the whole record, which is transformed as one. With a `band`, values between samples are made of the row's
-   samples and some beside them, over which the record fades to zero: by the running sum of a Kaiser window, whose
-   spectrum ends at (1 - band) fs/2, so that nothing in the band is aliased. (Raw echoes have flanks beyond any band;
-   those of a bright echo beside the row would reach into it.) Where a part is not shorter, and
-   with preemphasis, the whole record is read.
+   depend on the whole record, which is transformed as one.
+
+   With a `band`, values between samples are made of the row's samples and some beside them, over which the record
+   fades to zero: by the running sum of a Kaiser window, whose spectrum ends at (1 - band) fs/2, so that nothing in the
+   band is aliased. Raw echoes, whose flanks beyond any band reach far from a bright echo, are read as a whole; so are
+   records of which a part is no shorter, and with preemphasis.
 
    Zero padding is done by phases: values i = n upsample + phase are the samples n of the signal phase/upsample samples
    earlier, hence an inverse transform of the record's own length L, of its spectrum times exp(j 2 pi nu
