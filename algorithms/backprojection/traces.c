@@ -208,7 +208,7 @@ static struct stretch stretch_of(const struct acquisition *acquisition, const st
 {
     const struct stretch plain = stretch_plain(acquisition, form);
     const int beside = form->degree > 0 ? reach_of(form->degree, form->upsample) : form->guard;
-    const double fade = ceil(2 * FADE_EDGE / (1 - form->band)), around = fade + beside / form->upsample + 1;
+    const double fade = ceil(2 * FADE_EDGE / fmax(1 - form->band, 1e-9)), around = fade + beside / form->upsample + 1;
     const bool between = form->upsample > 1 || form->degree > 0;
     if (!(form->count > 0 && form->band > 0 && between && acquisition->compressed) || form->preemphasis
         || !(form->count + 2 * around < acquisition->samples))
