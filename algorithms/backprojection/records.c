@@ -24,7 +24,7 @@ struct traces_form bp_records_form(struct bp *bp)
     const int last = (int)fmin(end, bp->medium.last + table->first + taps + 1);
     const struct acquisition *a = bp->problem.acquisition;
     /* The plain path takes whole records. */
-    const bool limited = a->compressed && !(a->noise > BEYOND) && bp->medium.phase_limit > 0;
+    const bool limited = a->compressed && !a->filtered && !(a->noise > BEYOND) && bp->medium.phase_limit > 0;
     return (struct traces_form){.upsample = table->upsample,
                                 .degree = table->branches - 1,
                                 .guard = table->guard,

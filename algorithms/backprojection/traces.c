@@ -27,9 +27,8 @@ static const double FADE_SHAPE = 32.1, FADE_EDGE = 10.3;
 
 struct traces {
     struct traces_shape shape;
-    struct stretch stretch;
-    int samples;                 /* of a record */
-    real *fading;                /* [stretch.fade] */
+    int samples, fade;           /* of a record; those of what is read, at either end, that fade */
+    real *fading;                /* [fade] */
     bool transforms;             /* false: compressed already, and read as it is */
     FFTW(plan) forward, inverse; /* of L = shape.period, into another array: in place takes 1.2 times as long */
     complex_real *filter;        /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
@@ -120,7 +119,7 @@ static int convolved(const struct traces_shape *shape)
 /* False without memory. */
 static bool fading_fill(struct traces *traces)
 {
-    const int count = traces->stretch.fade;
+    const int count = traces->fade;
     double sum = 0, all = 0;
     traces->fading = store_room(&traces->store, (size_t)count, sizeof *traces->fading, 1);
     for (int pass = 0; traces->fading && pass < 2; pass++, all = sum, sum = 0)
@@ -172,7 +171,7 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
         traces->forward = fft_line(store, length, a, a + pitch, FFTW_FORWARD);
         traces->inverse = fft_line(store, length, a, a + pitch, FFTW_BACKWARD);
     }
-    const bool faded = traces->stretch.fade == 0 || fading_fill(traces);
+    const bool faded = traces->fade == 0 || fading_fill(traces);
     if (!faded || !traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
                           threads * (double)traces->each * sizeof(complex_real) / 1e6);
@@ -263,7 +262,7 @@ static enum status plan(const struct acquisition *acquisition, const struct trac
     struct traces *traces = calloc(1, sizeof *traces);
     if (!traces)
         return status_set(STATUS_FAILED, "no memory for range compression");
-    traces->stretch = stretch;
+    traces->fade = stretch.fade;
     traces->samples = acquisition->samples;
     traces->shape = (struct traces_shape){.first = form->count > 0 ? form->first : 0,
                                           .samples = n,
@@ -299,18 +298,17 @@ static complex_real *scratch_of(const struct traces *traces, int thread)
 
 static void spectrum_fill(const struct traces *traces, int thread, const void *record, void *spectrum)
 {
-    const struct stretch *stretch = &traces->stretch;
-    const size_t length = (size_t)traces->shape.period;
-    const int begin = stretch->from < 0 ? stretch->from + traces->samples : stretch->from;
-    const int left = traces->samples - begin, n = stretch->read < left ? stretch->read : left;
+    const struct traces_shape *shape = &traces->shape;
+    const size_t length = (size_t)shape->period, count = (size_t)shape->read;
+    const int begin = shape->from < 0 ? shape->from + traces->samples : shape->from, left = traces->samples - begin;
+    const size_t n = (size_t)(shape->read < left ? shape->read : left);
     complex_real *padded = scratch_of(traces, thread);
-    const size_t count = (size_t)stretch->read;
-    memcpy(padded, (const complex_real *)record + begin, (size_t)n * sizeof *padded);
-    memcpy(padded + n, record, (count - (size_t)n) * sizeof *padded);
+    memcpy(padded, (const complex_real *)record + begin, n * sizeof *padded);
+    memcpy(padded + n, record, (count - n) * sizeof *padded);
     memset(padded + count, 0, (length - count) * sizeof *padded);
-    for (int k = 0; k < stretch->fade; k++) {
+    for (int k = 0; k < traces->fade; k++) {
         padded[k] *= traces->fading[k];
-        padded[stretch->read - 1 - k] *= traces->fading[k];
+        padded[shape->read - 1 - k] *= traces->fading[k];
     }
     FFTW(execute_dft)(traces->forward, padded, spectrum);
     traces->planes->filter(spectrum, traces->filter, length);

@@ -53,6 +53,7 @@ struct acquisition {
     double echo_squint;          /* rad: the beam's axis, from which theta_t counts, ahead of broadside (r > 0) */
     bool echo_tapers;            /* and their amplitude falls as both elements' sinc does */
     bool noisy;                  /* the samples contain, or may contain, noise, which comes from anywhere */
+    bool filtered;               /* a filter made the samples: what they hold beyond the band is unknown */
     double noise;                /* share of white noise in the compressed echoes' energy, where known; 0: none */
     double aperture_limit;       /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
     struct target_area area;     /* the area of interest; a filter may remove the echoes from elsewhere */

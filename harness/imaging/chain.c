@@ -90,6 +90,7 @@ static enum status filter_plan(struct chain_plan *plan, int k)
     }
     if (status == STATUS_OK)
         status = filter->algorithm->filtered(link->plan, &link->acquisition);
+    link->acquisition.filtered = true;
     return status == STATUS_OK ? link_echoes(link, problem.precision) : status;
 }
 
@@ -201,6 +202,7 @@ static enum status move(struct chain_plan *plan, int k, struct stages *stages)
     if (moved) {
         acquisition_free(&link->acquisition);
         link->acquisition = now;
+        link->acquisition.filtered = true;
     }
     status = plans_make(plan, k + 1);
     stages_end(stages, "plan");

@@ -223,6 +223,11 @@ static void samples_left_out(void **state)
         int first, last;
         const struct problem problem = problem_make(&a, c->patches, c->grids, PRECISION_DOUBLE);
         const int met = samples_met(&problem, &first, &last);
+        struct acquisition filtered = a;
+        filtered.filtered = true; /* who knows what is beyond the band? */
+        assert_null(strstr(
+            support_work("bp_farrow:degree=3", problem_make(&filtered, c->patches, c->grids, PRECISION_DOUBLE)).skipped,
+            "samples"));
         for (size_t m = 0; m < 4 * sizeof methods / sizeof *methods; m++) {
             const struct method *method = &methods[m / 4];
             char text[100];
