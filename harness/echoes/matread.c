@@ -96,18 +96,19 @@ static void limit_resource(__rlimit_resource_t resource, rlim_t wish)
 /* This process only reads; a thread that reads is in the process of another program, whose limits stay as they are. */
 static bool process_reads;
 
-/* Allow the process `bytes` more than it has mapped now, and the time to read them. */
-static void limit_memory_and_time(size_t bytes)
+/* Allow the process the memory of `bytes` more than it has mapped now, and the time to read them and to look through a
+   file of `file_size` bytes. Some damaged files lead HDF5 round in circles; several processes may read one file. */
+static void limit_memory_and_time(size_t bytes, size_t file_size)
 {
     if (!process_reads) {
         return;
     }
-    limit_resource(RLIMIT_CPU, (rlim_t)(clock() / CLOCKS_PER_SEC) + 10 + bytes / 10000000);
+    limit_resource(RLIMIT_CPU, (rlim_t)(clock() / CLOCKS_PER_SEC) + 5 + bytes / 10000000 + file_size / 100000000);
 #ifndef SANITIZED /* its shadow memory alone is terabytes of address space */
     unsigned long pages;
     FILE *file = fopen("/proc/self/statm", "r");
     if (file && fscanf(file, "%lu", &pages) == 1) {
-        limit_resource(RLIMIT_AS, (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + bytes);
+        limit_resource(RLIMIT_AS, (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + SPARE_BYTES + bytes);
     }
     if (file) {
         fclose(file);
@@ -151,7 +152,7 @@ enum status check_claim(const char *path, const struct wanted *wanted, const mat
         }
     }
     /* Twice the numbers: HDF5 may hold a whole data set as one packed chunk. */
-    limit_memory_and_time(SPARE_BYTES + 2 * bytes);
+    limit_memory_and_time(2 * bytes, file_size);
     return STATUS_OK;
 }
 
@@ -381,7 +382,7 @@ _Noreturn void variables_send(const char *path, const struct wanted *wanted, int
     dup2(silence, STDERR_FILENO);
     limit_resource(RLIMIT_CORE, 0);
     process_reads = true;
-    limit_memory_and_time(SPARE_BYTES);
+    limit_memory_and_time(0, file_size);
     variables_reply(path, wanted, count, file_size, descriptor);
     _exit(0); /* the parent's buffers and exit handlers are not ours */
 }
