@@ -11,6 +11,7 @@
 #include "backprojection/pairs/pairs.h"
 #include "common/fft_length.h"
 #include "common/pulse_band.h"
+#include "common/rates.h"
 
 /* The kernel's branches, if there are at most KERNEL_BRANCHES_MOST; false without memory. In float they may err by the
    rounding of phase factors (ROUNDING). */
@@ -140,25 +141,40 @@ int bp_method_conditions(const struct problem *problem, const void *method, cons
     return count;
 }
 
-/* Tables pay where they serve several columns of a residue: measured, from two ping spacings of image on. */
-static bool tables_pay(const struct bp *bp)
+static enum status forecast_cost(const struct problem *problem, const struct interpolator *in,
+                                 const struct bp_options *options, struct forecast *forecast);
+
+/* The engine that takes less time by the built-in rates, so that a setting makes the same image on every machine. */
+static enum status compare_engines(struct bp *bp, const struct interpolator *in, const struct bp_options *options)
 {
-    const struct acquisition *a = bp->problem.acquisition;
-    double wide = 0, spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : INFINITY;
-    for (int k = 0; k < bp->problem.patch_count; k++)
-        wide = fmax(wide, bp->problem.patches[k].x_count * bp->problem.patches[k].x_step);
-    return wide >= 2 * spacing;
+    struct forecast general, invariant;
+    struct bp_options fixed = *options;
+    fixed.engine = BP_ENGINE_GENERAL;
+    enum status status = forecast_cost(&bp->problem, in, &fixed, &general);
+    fixed.engine = BP_ENGINE_INVARIANT;
+    if (status == STATUS_OK)
+        status = forecast_cost(&bp->problem, in, &fixed, &invariant);
+    if (status != STATUS_OK)
+        return status;
+    const enum precision precision = bp->problem.precision;
+    if (rates_sums(&rates_built_in, &invariant, precision, general.pairs)
+        < rates_sums(&rates_built_in, &general, precision, general.pairs))
+        bp->engine = &bp_invariant;
+    return STATUS_OK;
 }
 
-static enum status choose_engine(struct bp *bp, const struct bp_options *options)
+static enum status choose_engine(struct bp *bp, const struct interpolator *in, const struct bp_options *options)
 {
-    enum status status = bp_invariant.applicable(bp);
-    bp->engine = &bp_general;
+    enum status status = options->engine == BP_ENGINE_GENERAL ? STATUS_OK : bp_invariant.applicable(bp);
+    bp->engine = options->engine == BP_ENGINE_INVARIANT ? &bp_invariant : &bp_general;
     if (options->engine == BP_ENGINE_INVARIANT && status != STATUS_OK)
         return status_set(STATUS_UNSUPPORTED, "engine=invariant: %s", status_message());
-    if (options->engine == BP_ENGINE_INVARIANT
-        || (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK && tables_pay(bp)))
-        bp->engine = &bp_invariant;
+    if (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK)
+        status = compare_engines(bp, in, options);
+    else
+        status = STATUS_OK;
+    if (status != STATUS_OK)
+        return status;
     /* The approximation also moves a sample coordinate by at most a quarter of the finest step. */
     double finest = bp->medium.fs * bp->table.upsample * (bp->table.steps > 0 ? bp->table.steps : 1);
     if (!options->exact)
@@ -209,7 +225,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     if (status == STATUS_OK)
         status = tabulate(bp, interpolator);
     if (status == STATUS_OK)
-        status = choose_engine(bp, options);
+        status = choose_engine(bp, interpolator, options);
     if (status == STATUS_OK)
         status = engine_plan(bp, options);
     if (status == STATUS_OK && bp->problem.window)
@@ -292,7 +308,7 @@ static enum status forecast_begin(const struct problem *problem, const struct in
     if (status == STATUS_OK)
         status = problem_turn_back(&bp->problem, &bp->turned, NULL);
     if (status == STATUS_OK)
-        status = choose_engine(bp, options);
+        status = choose_engine(bp, in, options);
     return status == STATUS_OK ? bp_met_find(bp) : status;
 }
 

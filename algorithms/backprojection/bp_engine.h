@@ -77,7 +77,7 @@ int bp_met_count(const struct bp *bp);
 /* The most neighbouring pings that are summed together; the first ping is a multiple of this number. */
 int bp_pings_joined(const struct acquisition *acquisition);
 
-/* Memory of bp->engines. With a window, unused parts are 0 and take no room: it uses so many runs of so many bytes. */
+/* Zeroed memory of bp->engines. With a window, unused parts take no room: it uses so many runs of so many bytes. */
 void *bp_part_allocate(struct bp *bp, size_t bytes, size_t runs, size_t run);
 
 static inline size_t real_size(enum precision precision)

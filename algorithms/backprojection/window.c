@@ -8,10 +8,9 @@
 void *bp_part_allocate(struct bp *bp, size_t bytes, size_t runs, size_t run)
 {
     static const double PAGE = 4096; /* of memory: a run begins anywhere in one */
-    if (!bp->problem.window)
-        return store_room(&bp->engines, bytes, 1, 1);
-    bp->engines.bytes += fmin((double)bytes, (double)runs * ((double)run + PAGE));
-    return store_keep(&bp->engines, memory_sparse(bytes, false), memory_sparse_free);
+    const bool whole = !bp->problem.window;
+    bp->engines.bytes += whole ? (double)bytes : fmin((double)bytes, (double)runs * ((double)run + PAGE));
+    return store_keep(&bp->engines, memory_sparse(bytes, whole), memory_sparse_free);
 }
 
 struct problem bp_wanted(const struct bp *bp, struct grid *part)

@@ -41,6 +41,7 @@ struct forecast {
     int finer;         /* values of a record per sample */
     double units;      /* made for the pairs: entries of tables, or blocks of pixels */
     double residues;   /* by tables: columns from ping to ping whose neighbours share loads */
+    double pairs;      /* by the general engine: about how many there are; else 0 */
     double apart;      /* by the general engine: share of the pairs whose pixels share no loads, a sample apart */
     double pair_flops; /* of a pair */
     /* Of all records together: */

@@ -100,6 +100,8 @@ TAKES(calloc, (size_t n, size_t size), (n, size), n *size)
 TAKES(aligned_alloc, (size_t alignment, size_t size), (alignment, size), size)
 TAKES(strdup, (const char *text), (text), strlen(text) + 1)
 FREES(free)
+TAKES(memory_sparse, (size_t size, bool huge), (size, huge), size)
+FREES(memory_sparse_free)
 
 void *__real_realloc(void *block, size_t size);
 void *__wrap_realloc(void *block, size_t size);

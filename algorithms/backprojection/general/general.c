@@ -130,7 +130,9 @@ static void general_units(const struct bp *bp, struct forecast *forecast)
             ping_count(bp, p, &box, &problem->patches[k], &sum);
     }
     const double units = sum.blocks + sum.exact * EXACT_COST / BLOCK_COST;
-    forecast->units = looked_at > 0 ? units * a->receivers * met / looked_at : 0;
+    const double records = looked_at > 0 ? (double)a->receivers * met / looked_at : 0;
+    forecast->units = units * records;
+    forecast->pairs = sum.met * records;
     forecast->apart = sum.met > 0 ? sum.apart / sum.met : 0;
 }
 

@@ -180,14 +180,10 @@ static void store(const struct bp *bp, int k, void *pixels)
 static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
     struct invariant *in = bp->state;
-    int receivers = bp->problem.acquisition->receivers;
-    size_t size = real_size(bp->problem.precision), slab = (size_t)in->receivers * in->slab.receiver_stride * size;
+    const int receivers = bp->problem.acquisition->receivers;
+    const size_t size = real_size(bp->problem.precision);
     for (int k = 0; k < in->patch_count; k++)
         memory_clear(in->sums[k], 2 * row_values(in, k) * (size_t)problem_window(&bp->problem, k).rows * size);
-    if (!bp->problem.window) {           /* a window's memory is zero where it is not used */
-        memory_clear(in->slab_re, slab); /* the lead and the end of each row stay zero */
-        memory_clear(in->slab_im, slab);
-    }
     stages_end(stages, "clear");
     for (int first = 0; first < receivers; first += in->receivers) {
         int count = receivers - first < in->receivers ? receivers - first : in->receivers;
