@@ -36,7 +36,7 @@ eval log_tics
 eval short_tics(y_low, y_high)
 set xrange [x_low:x_high]
 set yrange [y_low:y_high]
-set xlabel "median run time, raw echoes to image (s)"
+set xlabel "median run time, echoes to image (s)"
 set ylabel "relative L2 error of the complex image"
 set title title.": error against run time"
 scale = control_s == control_s ? control_s : 1

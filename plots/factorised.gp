@@ -28,7 +28,7 @@ set logscale xy
 set xrange [0.3:20]
 set yrange [3e-5:0.2]
 set format y "1e%T"
-set xlabel "time on one core, raw echoes to image (s)"
+set xlabel "time on one core, echoes to image (s)"
 set key at screen 0.5,50.0/height center top maxrows 2 samplen 4 font ",12"
 do for [n = 1:2] {
     set lmargin at screen (n == 1 ? 115.0/width : 0.56)

@@ -61,7 +61,7 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
     if (f->image_cost > 0)
         candidate->pairs = f->image_pairs;
     candidate->flops = candidate->pairs * f->pair_flops + f->image_flops + f->record_flops + f->kernel_flops;
-    candidate->seconds = rates_sums(rates_get(), f, problem.precision, candidate->pairs);
+    candidate->seconds = rates_run(rates_sums(rates_get(), f, problem.precision, candidate->pairs));
     return status;
 }
 
@@ -89,7 +89,7 @@ static enum status candidate_count(const struct setting *setting, struct candida
         } else {
             candidate->pairs = 0;
             candidate->flops = f->migration_flops;
-            candidate->seconds = rates_migration(rates_get(), f, problem->precision);
+            candidate->seconds = rates_run(rates_migration(rates_get(), f, problem->precision));
         }
     }
     return laws_refused(candidate, status);
@@ -254,7 +254,7 @@ enum status laws_fill(struct setting *setting, struct choice *choice)
                                             .record_flops = first->forecast.record_flops,
                                             .slowness = first->forecast.slowness,
                                             .record_values = first->forecast.record_values};
-            c->seconds = rates_sums(rates_get(), &images, setting->problem->precision, 0);
+            c->seconds = rates_run(rates_sums(rates_get(), &images, setting->problem->precision, 0));
         }
         choice->count++;
     }

@@ -154,11 +154,11 @@ static void flat_bands(void **state)
             const char *spec;
             double law, factor;
         } flat[] = {
-            {"bp_linear:beta=1024", linear_law(edge, PERIOD, false), 1.05},
-            {"bp_linear:beta=1024,preemphasis=on", linear_law(edge, PERIOD, true), 1.05},
-            {"bp_sinc:taps=4,window=kaiser_band", 0.25 * exp(-0.5 * M_PI * 4 * (1 - rho)), 2},
-            {"bp_sinc:taps=8,window=kaiser_band", 0.25 * exp(-0.5 * M_PI * 8 * (1 - rho)), 2},
-            {"bp_sinc:taps=16,window=kaiser_band", 0.25 * exp(-0.5 * M_PI * 16 * (1 - rho)), 2},
+            {"bp_linear:beta=1024,engine=invariant", linear_law(edge, PERIOD, false), 1.05},
+            {"bp_linear:beta=1024,preemphasis=on,engine=invariant", linear_law(edge, PERIOD, true), 1.05},
+            {"bp_sinc:taps=4,window=kaiser_band,engine=invariant", 0.25 * exp(-0.5 * M_PI * 4 * (1 - rho)), 2},
+            {"bp_sinc:taps=8,window=kaiser_band,engine=invariant", 0.25 * exp(-0.5 * M_PI * 8 * (1 - rho)), 2},
+            {"bp_sinc:taps=16,window=kaiser_band,engine=invariant", 0.25 * exp(-0.5 * M_PI * 16 * (1 - rho)), 2},
         };
         struct acquisition a;
         struct echoes echoes;

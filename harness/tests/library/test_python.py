@@ -457,7 +457,7 @@ class Python(unittest.TestCase):
                 except sasbench.Error as error:
                     print(error)
             other = threading.Thread(target=form)
-            timer = threading.Timer(3, os.kill, (os.getpid(), signal.SIGINT))
+            timer = threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT))
             other.start()
             timer.start()
             try:

@@ -1,7 +1,6 @@
-#include "common/rates.h"
+#include "contract/forecast_time.h"
 
 #include <math.h>
-#include <omp.h>
 
 /* Measured by `plan` on an AMD EPYC (Zen 5) with AVX-512. */
 const struct rates rates_built_in = {
@@ -52,11 +51,9 @@ static double spread(const struct forecast *f)
     return grows && f->finer > 1 ? 1 + GROWTH[f->tables] * pow(f->finer - 1, POWER[f->tables]) : 1;
 }
 
-static const double START = 1e-5; /* s: of any run, also where no pixel meets a record */
-
 static double factor(const struct rates *rates, enum precision precision)
 {
-    return (precision == PRECISION_DOUBLE ? rates->doubled : 1) / omp_get_max_threads();
+    return precision == PRECISION_DOUBLE ? rates->doubled : 1;
 }
 
 double rates_sums(const struct rates *rates, const struct forecast *f, enum precision precision, double pairs)
@@ -69,7 +66,7 @@ double rates_sums(const struct rates *rates, const struct forecast *f, enum prec
     const double records = f->record_flops * f->slowness * rates->compress + f->kernel_flops * rates->filter
                            + f->record_values * rates->put[engine];
     const double sums = spread(f) * (pairs * pair + f->units * unit) + f->image_cost * rates->image;
-    return START + factor(rates, precision) * (sums + records);
+    return factor(rates, precision) * (sums + records);
 }
 
 double rates_migration(const struct rates *rates, const struct forecast *f, enum precision precision)
@@ -77,5 +74,5 @@ double rates_migration(const struct rates *rates, const struct forecast *f, enum
     double seconds = 0;
     for (int k = 0; k < MIGRATIONS; k++)
         seconds += f->migration[k] * rates->migrate[k];
-    return START + factor(rates, precision) * seconds;
+    return factor(rates, precision) * seconds;
 }

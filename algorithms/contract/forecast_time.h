@@ -1,6 +1,6 @@
 /* Seconds of the work that a forecast counts (contract/forecast.h). */
-#ifndef SASBENCH_COMMON_RATES_H
-#define SASBENCH_COMMON_RATES_H
+#ifndef SASBENCH_CONTRACT_FORECAST_TIME_H
+#define SASBENCH_CONTRACT_FORECAST_TIME_H
 
 #include "contract/algorithm.h"
 
@@ -28,7 +28,7 @@ struct rates {
 /* Of the machine that the program was written on. */
 extern const struct rates rates_built_in;
 
-/* Seconds with all of OpenMP's threads: of a forecast's sums of `pairs` pairs; of its range migration. */
+/* Seconds of one thread: of a forecast's sums of `pairs` pairs; of its range migration. */
 double rates_sums(const struct rates *rates, const struct forecast *forecast, enum precision precision, double pairs);
 double rates_migration(const struct rates *rates, const struct forecast *forecast, enum precision precision);
 
