@@ -141,7 +141,7 @@ int bp_method_conditions(const struct problem *problem, const void *method, cons
     return count;
 }
 
-static enum status forecast_cost(const struct problem *problem, const struct interpolator *in,
+static enum status forecast_work(const struct problem *problem, const struct interpolator *in,
                                  const struct bp_options *options, struct forecast *forecast);
 
 /* The invariant engine, whose delays are more exact, unless the general one gains a tenth of the time or more: by the
@@ -151,10 +151,10 @@ static enum status compare_engines(struct bp *bp, const struct interpolator *in,
     struct forecast general, invariant;
     struct bp_options fixed = *options;
     fixed.engine = BP_ENGINE_GENERAL;
-    enum status status = forecast_cost(&bp->problem, in, &fixed, &general);
+    enum status status = forecast_work(&bp->problem, in, &fixed, &general);
     fixed.engine = BP_ENGINE_INVARIANT;
     if (status == STATUS_OK)
-        status = forecast_cost(&bp->problem, in, &fixed, &invariant);
+        status = forecast_work(&bp->problem, in, &fixed, &invariant);
     if (status != STATUS_OK)
         return status;
     const enum precision precision = bp->problem.precision;
@@ -302,12 +302,8 @@ static enum status forecast_begin(const struct problem *problem, const struct in
     const struct acquisition *a = problem->acquisition;
     *bp = (struct bp){.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, 0, a->samples - 1, 0}};
     bp->table = table_of(in);
-    struct condition list[CONDITIONS_MAX];
-    enum status status =
-        conditions_check("back projection", list, bp_method_conditions(problem, NULL, options, list, CONDITIONS_MAX));
     aperture_take(bp, options);
-    if (status == STATUS_OK)
-        status = problem_turn_back(&bp->problem, &bp->turned, NULL);
+    enum status status = problem_turn_back(&bp->problem, &bp->turned, NULL);
     if (status == STATUS_OK)
         status = choose_engine(bp, in, options);
     return status == STATUS_OK ? bp_met_find(bp) : status;
@@ -338,8 +334,8 @@ static double error_between_samples(const struct problem *problem, const struct 
                                                                                : NAN;
 }
 
-/* The forecast without the error law, which takes most of the time. */
-static enum status forecast_cost(const struct problem *problem, const struct interpolator *in,
+/* The forecast without conditions and the error law, which takes most of the time. */
+static enum status forecast_work(const struct problem *problem, const struct interpolator *in,
                                  const struct bp_options *options, struct forecast *forecast)
 {
     struct bp bp;
@@ -362,6 +358,15 @@ static enum status forecast_cost(const struct problem *problem, const struct int
     store_release(&bp.tables);
     turned_free(&bp.turned);
     return status;
+}
+
+static enum status forecast_cost(const struct problem *problem, const struct interpolator *in,
+                                 const struct bp_options *options, struct forecast *forecast)
+{
+    struct condition list[CONDITIONS_MAX];
+    const enum status status =
+        conditions_check("back projection", list, bp_method_conditions(problem, NULL, options, list, CONDITIONS_MAX));
+    return status == STATUS_OK ? forecast_work(problem, in, options, forecast) : status;
 }
 
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const struct bp_options *options,

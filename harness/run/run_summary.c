@@ -242,7 +242,9 @@ void run_summary_print(FILE *stream, const struct results *results, int scene_co
                     run.rows.measurements[run.rows.csv.row_count++] = results->measurements[row];
     }
     const int first = (longest < width / 5 ? longest : width / 5) + 1;
-    fputs("\nFastest within a relative error: time, speed-up over the scalar loop\n(=: the same as to its left)\n", stream);
+    fputs("\nFastest within a relative error: time, speed-up over the scalar loop\n"
+          "(=: the same as to its left)\n",
+          stream);
     line_print(stream, "scene", bounds, width, first);
     for (int s = 0; s < scene_count; s++)
         scene_print(stream, &run, scenes[s].name, width, first);
