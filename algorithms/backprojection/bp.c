@@ -313,7 +313,7 @@ static enum status forecast_begin(const struct problem *problem, const struct in
 static void forecast_records(struct bp *bp, const struct interpolator *in, struct forecast *forecast)
 {
     const struct acquisition *a = bp->problem.acquisition;
-    const struct traces_form form = bp_records_form(bp);
+    const struct traces_form form = bp_records_form(bp, bp_samples_read(bp));
     const double records = (double)bp_met_count(bp) * a->receivers, fine = (form.count - 1.0) * in->upsample + 1;
     const int taps = forecast->kind == READ_BRANCHES && in->degree == 0 ? in->taps : 0; /* of a kernel's branches */
     bp->engine->units(bp, forecast);

@@ -85,11 +85,13 @@ static inline size_t real_size(enum precision precision)
     return precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
 }
 
-/* The part of the records that pairs read, into bp->medium, and the form of its rows; all of them without an engine. */
-struct traces_form bp_records_form(struct bp *bp);
-/* Records for up to omp_get_max_threads() threads. Fills bp->traces, which bp->engines owns, bp->shape, and from these
+/* The samples that the engine's pairs read. */
+struct sample_span bp_samples_read(const struct bp *bp);
+/* The form of rows that hold this part of the records, which bp->medium is limited to. */
+struct traces_form bp_records_form(struct bp *bp, struct sample_span read);
+/* Rows of that form for up to omp_get_max_threads() threads. Fills bp->traces, which bp->engines owns, bp->shape, and from these
    `origin` of the table. */
-enum status bp_plan_traces(struct bp *bp);
+enum status bp_plan_traces(struct bp *bp, struct sample_span read);
 /* Append to `text` of `room` characters `join` and the samples that no row needs; nothing if all are needed. */
 void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join);
 /* Record `index` of the echoes, complex [samples]. */

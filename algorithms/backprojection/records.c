@@ -10,16 +10,18 @@
    tenth of it. */
 static const double BEYOND = 1e-12;
 
+struct sample_span bp_samples_read(const struct bp *bp)
+{
+    return pairs_samples(&bp->problem, bp->met, bp->engine->beside ? bp->engine->beside(bp) : 0);
+}
+
 /* Rows have the samples at the delays, those that the taps reach, and one more for rounding to the nearest. */
-struct traces_form bp_records_form(struct bp *bp)
+struct traces_form bp_records_form(struct bp *bp, struct sample_span read)
 {
     const struct bp_table *table = &bp->table;
     const int end = bp->problem.acquisition->samples - 1, taps = table->branches > 1 ? 1 : table->taps;
-    struct sample_span span = {0, end};
-    if (bp->engine)
-        span = pairs_samples(&bp->problem, bp->met, bp->engine->beside ? bp->engine->beside(bp) : 0);
-    bp->medium.first = floor(span.first);
-    bp->medium.last = ceil(span.last);
+    bp->medium.first = floor(read.first);
+    bp->medium.last = ceil(read.last);
     const int first = (int)fmax(0, bp->medium.first + table->first - 1);
     const int last = (int)fmin(end, bp->medium.last + table->first + taps + 1);
     const struct acquisition *a = bp->problem.acquisition;
@@ -49,10 +51,10 @@ const struct planes *planes_choose(enum precision precision)
     return planes[isa_choose()][precision];
 }
 
-enum status bp_plan_traces(struct bp *bp)
+enum status bp_plan_traces(struct bp *bp, struct sample_span read)
 {
     const struct acquisition *a = bp->problem.acquisition;
-    const struct traces_form form = bp_records_form(bp);
+    const struct traces_form form = bp_records_form(bp, read);
     const enum status status =
         traces_of(bp->problem.precision)->plan(a, &form, omp_get_max_threads(), &bp->shape, &bp->traces);
     if (status != STATUS_OK)

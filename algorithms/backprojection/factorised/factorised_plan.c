@@ -140,7 +140,7 @@ static enum status reading_make(struct factorised *plan)
                                   .guard = BP_BRANCHES_GUARD,
                                   .branches = degree + 1,
                                   .shift = 0.5};
-    enum status status = bp_plan_traces(bp);
+    enum status status = bp_plan_traces(bp, tree_samples(&plan->tree));
     if (status != STATUS_OK)
         return status;
     const enum precision precision = bp->problem.precision;

@@ -265,3 +265,32 @@ void tree_free(struct tree *tree)
     free(tree->steps);
     *tree = (struct tree){.views = 0};
 }
+
+/* A place at rho lies within rho -+ radius of a subaperture's elements, but for their height and for receivers' way
+   while the echo is under way. */
+struct sample_span tree_samples(const struct tree *tree)
+{
+    const struct acquisition *a = tree->problem.acquisition;
+    struct sample_span read = pairs_samples(&tree->problem, NULL, 0);
+    for (int n = 0; n < tree->first[1]; n++) {
+        const struct subaperture *part = &tree->subapertures[n];
+        double near = INFINITY, far = 0;
+        for (int view = 0; view < tree->views; view++) {
+            const struct polar *polar = &part->polars[view];
+            const double rho = polar_step(tree, 0, view)->rho;
+            near = polar->lines > 0 ? fmin(near, polar->place_first * rho) : near;
+            far = polar->lines > 0 ? fmax(far, (polar->place_first + polar->places - 1) * rho) : far;
+        }
+        for (int p = part->ping; p < part->ping + part->pings && near <= far; p++) {
+            const double speed = vector_norm(a->velocity[p]), c = a->sound_speed;
+            double height = fabs(a->tx[p].z);
+            for (int m = 0; m < a->receivers; m++)
+                height = fmax(height, fabs(a->rx[(size_t)p * (size_t)a->receivers + (size_t)m].z));
+            const double away = hypot(far + part->radius, height);
+            const double least = 2 * fmax(0, near - part->radius) / (c + speed), most = 2 * away / (c - speed);
+            read.first = fmin(read.first, floor((least - a->t0[p]) * a->fs) - 1);
+            read.last = fmax(read.last, ceil((most - a->t0[p]) * a->fs) + 1);
+        }
+    }
+    return (struct sample_span){fmax(read.first, 0), fmin(read.last, a->samples - 1)};
+}

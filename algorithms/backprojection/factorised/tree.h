@@ -137,4 +137,7 @@ void tree_pixels(const struct tree *tree, int subaperture, int view, const struc
 void tree_direct(const struct tree *tree, int subaperture, int patch, const struct pixel_line *line,
                  struct spans *spans);
 
+/* Samples of the records that images of level 0 and pixels read. */
+struct sample_span tree_samples(const struct tree *tree);
+
 #endif

@@ -158,7 +158,7 @@ static enum status general_plan(struct bp *bp)
     struct general *general = bp->state = store_keep(store, calloc(1, sizeof *general), free);
     if (!general)
         return status_set(STATUS_FAILED, "no memory for the plan");
-    const enum status status = bp_plan_traces(bp);
+    const enum status status = bp_plan_traces(bp, bp_samples_read(bp));
     if (status != STATUS_OK)
         return status;
     if (bp->kernel.branches > 0 && bp->medium.phase_limit > 0)

@@ -406,7 +406,7 @@ enum status invariant_plan(struct bp *bp)
     bp->state = store_keep(&bp->engines, calloc(1, sizeof(struct invariant)), free);
     if (!bp->state)
         return status_set(STATUS_FAILED, "no memory for the plan");
-    enum status status = bp_plan_traces(bp);
+    enum status status = bp_plan_traces(bp, bp_samples_read(bp));
     acquisition_is_straight(bp->problem.acquisition, &track);
     if (status == STATUS_OK)
         status = plan_track(bp, &track);
