@@ -89,8 +89,8 @@ static inline size_t real_size(enum precision precision)
 struct sample_span bp_samples_read(const struct bp *bp);
 /* The form of rows that hold this part of the records, which bp->medium is limited to. */
 struct traces_form bp_records_form(struct bp *bp, struct sample_span read);
-/* Rows of that form for up to omp_get_max_threads() threads. Fills bp->traces, which bp->engines owns, bp->shape, and from these
-   `origin` of the table. */
+/* Rows of that form for up to omp_get_max_threads() threads. Fills bp->traces, which bp->engines owns, bp->shape, and
+   from these `origin` of the table. */
 enum status bp_plan_traces(struct bp *bp, struct sample_span read);
 /* Append to `text` of `room` characters `join` and the samples that no row needs; nothing if all are needed. */
 void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join);
