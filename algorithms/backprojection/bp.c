@@ -144,38 +144,20 @@ int bp_method_conditions(const struct problem *problem, const void *method, cons
 static enum status forecast_work(const struct problem *problem, const struct interpolator *in,
                                  const struct bp_options *options, struct forecast *forecast);
 
-/* The invariant engine, whose delays are more exact, unless the general one gains a tenth of the time or more: by the
-   built-in rates, so that a setting makes the same image on every machine. */
-static enum status compare_engines(struct bp *bp, const struct interpolator *in, const struct bp_options *options)
-{
-    struct forecast general, invariant;
-    struct bp_options fixed = *options;
-    fixed.engine = BP_ENGINE_GENERAL;
-    enum status status = forecast_work(&bp->problem, in, &fixed, &general);
-    fixed.engine = BP_ENGINE_INVARIANT;
-    if (status == STATUS_OK)
-        status = forecast_work(&bp->problem, in, &fixed, &invariant);
-    if (status != STATUS_OK)
-        return status;
-    const enum precision precision = bp->problem.precision;
-    if (rates_sums(&rates_built_in, &invariant, precision, general.pairs)
-        <= 1.1 * rates_sums(&rates_built_in, &general, precision, general.pairs))
-        bp->engine = &bp_invariant;
-    return STATUS_OK;
-}
-
 static enum status choose_engine(struct bp *bp, const struct interpolator *in, const struct bp_options *options)
 {
+    const bool invariant = options->engine == BP_ENGINE_INVARIANT;
     enum status status = options->engine == BP_ENGINE_GENERAL ? STATUS_OK : bp_invariant.applicable(bp);
-    bp->engine = options->engine == BP_ENGINE_INVARIANT ? &bp_invariant : &bp_general;
-    if (options->engine == BP_ENGINE_INVARIANT && status != STATUS_OK)
+    bp->engine = invariant ? &bp_invariant : &bp_general;
+    if (invariant && status != STATUS_OK)
         return status_set(STATUS_UNSUPPORTED, "engine=invariant: %s", status_message());
-    if (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK)
-        status = compare_engines(bp, in, options);
-    else
-        status = STATUS_OK;
-    if (status != STATUS_OK)
-        return status;
+    if (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK) {
+        struct forecast forecast;
+        status = forecast_work(&bp->problem, in, options, &forecast);
+        if (status != STATUS_OK)
+            return status;
+        bp->engine = forecast.tables ? &bp_invariant : &bp_general;
+    }
     /* The approximation also moves a sample coordinate by at most a quarter of the finest step. */
     double finest = bp->medium.fs * bp->table.upsample * (bp->table.steps > 0 ? bp->table.steps : 1);
     if (!options->exact)
@@ -334,8 +316,8 @@ static double error_between_samples(const struct problem *problem, const struct 
                                                                                : NAN;
 }
 
-/* The forecast without conditions and the error law, which takes most of the time. */
-static enum status forecast_work(const struct problem *problem, const struct interpolator *in,
+/* The forecast by the engine of the options, which is not auto. */
+static enum status forecast_engine(const struct problem *problem, const struct interpolator *in,
                                  const struct bp_options *options, struct forecast *forecast)
 {
     struct bp bp;
@@ -358,6 +340,31 @@ static enum status forecast_work(const struct problem *problem, const struct int
     store_release(&bp.tables);
     turned_free(&bp.turned);
     return status;
+}
+
+/* The forecast without conditions and the error law, which takes most of the time. engine=auto takes the invariant
+   engine, whose delays are more exact, unless the general one gains a tenth of the time or more: by the built-in rates,
+   so that a setting makes the same image on every machine. */
+static enum status forecast_work(const struct problem *problem, const struct interpolator *in,
+                                 const struct bp_options *options, struct forecast *forecast)
+{
+    if (options->engine != BP_ENGINE_AUTO)
+        return forecast_engine(problem, in, options, forecast);
+    struct forecast invariant;
+    struct bp_options fixed = *options;
+    fixed.engine = BP_ENGINE_GENERAL;
+    enum status status = forecast_engine(problem, in, &fixed, forecast);
+    if (status != STATUS_OK || options->exact)
+        return status;
+    fixed.engine = BP_ENGINE_INVARIANT;
+    status = forecast_engine(problem, in, &fixed, &invariant);
+    if (status != STATUS_OK)
+        return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
+    const enum precision precision = problem->precision;
+    if (rates_sums(&rates_built_in, &invariant, precision, forecast->pairs)
+        <= 1.1 * rates_sums(&rates_built_in, forecast, precision, forecast->pairs))
+        *forecast = invariant;
+    return STATUS_OK;
 }
 
 static enum status forecast_cost(const struct problem *problem, const struct interpolator *in,

@@ -278,8 +278,10 @@ struct sample_span tree_samples(const struct tree *tree)
         for (int view = 0; view < tree->views; view++) {
             const struct polar *polar = &part->polars[view];
             const double rho = polar_step(tree, 0, view)->rho;
-            near = polar->lines > 0 ? fmin(near, polar->place_first * rho) : near;
-            far = polar->lines > 0 ? fmax(far, (polar->place_first + polar->places - 1) * rho) : far;
+            if (polar->lines == 0)
+                continue;
+            near = fmin(near, polar->place_first * rho);
+            far = fmax(far, (polar->place_first + polar->places - 1) * rho);
         }
         for (int p = part->ping; p < part->ping + part->pings && near <= far; p++) {
             const double speed = vector_norm(a->velocity[p]), c = a->sound_speed;
