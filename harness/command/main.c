@@ -273,10 +273,11 @@ static void version(void)
 /* Join the ranks of mpirun, where they share this command's work. */
 static enum status ranks_share(const struct command *command, const struct task *task)
 {
-    if (command->run != command_run && command->run != command_sweep && !task->tile)
+    const bool tiles = command->run == command_image && image_is_tiled(task);
+    if (command->run != command_run && command->run != command_sweep && !tiles)
         return status_set(STATUS_INVALID,
-                          "%s: one of %d ranks, which do not share its work; accepted: run, sweep, image --tile, or "
-                          "--shard",
+                          "%s: one of %d ranks, which do not share its work; accepted: run, sweep, image --tile or "
+                          "--memory, --shard",
                           command->name, ranks_started());
     return ranks_begin();
 }

@@ -165,6 +165,13 @@ static void ranks_form_one_image(void **state)
             assert_false(support_exists("i.mat.tiles") || support_exists("i.mat.tiles.1"));
             free(pixels);
         }
+    program_good((const char *const[ARGUMENTS_MAX]){"simulate", "study/quick", "-o", "e.mat"});
+    ranks_good(2, (const char *const[ARGUMENTS_MAX]){"image", "-e", "e.mat", "-a", "reference", "-o", "m.mat",
+                                                     "--memory", "1G"});
+    char *pixels = pixels_read("m.mat", &sizes[1]);
+    assert_int_equal(sizes[0], sizes[1]);
+    assert_memory_equal(whole, pixels, sizes[0]);
+    free(pixels);
     free(whole);
 }
 
