@@ -114,8 +114,8 @@ static void write_variable(struct writer *writer, const char *name, enum matio_c
         return;
     }
     matvar_t *matvar = Mat_VarCreate(name, class, type, dims[2] == 1 ? 2 : 3, dims, data, MAT_F_DONT_COPY_DATA | flags);
-    /* Version 7.3 stays unpacked: HDF5 would pack real and imaginary parts in turns, which takes minutes. */
-    if (!matvar || Mat_VarWrite(writer->mat, matvar, is_v5 ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE) != 0) {
+    /* Not packed: the numbers are noise to a packer, which would take longer than most images. */
+    if (!matvar || Mat_VarWrite(writer->mat, matvar, MAT_COMPRESSION_NONE) != 0) {
         write_failed(writer);
     }
     Mat_VarFree(matvar);
