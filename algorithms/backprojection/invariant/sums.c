@@ -289,6 +289,7 @@ INLINE struct region region_from(int s, int pings, int j, int last)
 static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 {
     const int columns = chunk->raster->residue_columns, pings = chunk->raster->pings;
+    const struct pair_span *shown = &chunk->raster->shown;
     const struct bp_row_group *groups = chunk->scratch->groups;
     block_function *const *block = kernel->block[groups[chunk->begin].residues - 1];
     int least = INT_MAX, most = INT_MIN, widest = BP_BLOCK_VECTORS;
@@ -302,7 +303,7 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
         const int left = (columns - j + LANES - 1) / LANES, parts = (left + widest - 1) / widest;
         width = (left + parts - 1) / parts;
         const int last = columns < j + width * LANES ? columns : j + width * LANES;
-        if (last <= chunk->raster->shown.begin || j >= chunk->raster->shown.end)
+        if (last <= shown->begin || j >= shown->end)
             continue;
         const int stop = most < pings - j ? most : pings - j;
         for (int s = least > 1 - last ? least : 1 - last; s < stop; s = chunk->to) {
@@ -311,7 +312,12 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
                 region = region_from(s, pings, j, last);
             chunk->from = s;
             chunk->to = region.end < stop ? region.end : stop;
-            block[region.width - 1](chunk, region.j);
+            /* Of its vectors, those with wanted columns. */
+            const int before = shown->begin - region.j, until = shown->end - region.j;
+            const int begin = before > 0 ? before / LANES : 0;
+            const int end = until < region.width * LANES ? (until + LANES - 1) / LANES : region.width;
+            if (begin < end)
+                block[end - begin - 1](chunk, region.j + begin * LANES);
         }
     }
 }
