@@ -318,7 +318,7 @@ static double error_between_samples(const struct problem *problem, const struct 
 
 /* The forecast by the engine of the options, which is not auto. */
 static enum status forecast_engine(const struct problem *problem, const struct interpolator *in,
-                                 const struct bp_options *options, struct forecast *forecast)
+                                   const struct bp_options *options, struct forecast *forecast)
 {
     struct bp bp;
     *forecast = (struct forecast){.sums_pairs = true};
