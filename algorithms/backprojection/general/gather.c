@@ -222,13 +222,13 @@ INLINE void take(struct taking taking, struct record record, size_t apart, const
     *im = *im + x * s + y * c;
 }
 
-/* One run of each of a group's records; `receivers` is the group's, as a constant where this is inlined. */
-INLINE void add_taken(struct taking taking, int receivers, const struct receiver_group *group, struct run *runs,
+/* One run of each of a group's records. */
+INLINE void add_taken(struct taking taking, const struct receiver_group *group, struct run *runs,
                       struct pair_span pixels, real *re, real *im)
 {
     struct record from[GROUP_RECEIVERS];
     const struct bp_layout layout = group->layout;
-    const int count = pixels.end;
+    const int count = pixels.end, receivers = group->receivers;
     int i = pixels.begin;
     for (int g = 0; g < receivers; g++) {
         const int place = group->table->origin + group->table->first + runs[g].base;
@@ -260,22 +260,19 @@ INLINE void add_taken(struct taking taking, int receivers, const struct receiver
     }
 }
 
-/* Ways of taking as functions of their own, of a whole group and of one record: where several are inlined into one
-   function, the compiler's choice of registers for each depends on the others. */
+/* Ways of taking as functions of their own: where several are inlined into one function, the compiler's choice of
+   registers for each depends on the others. */
 typedef void adding(const struct receiver_group *group, struct run *runs, struct pair_span pixels, real *re, real *im);
-#define ADDING(name, line, branches, loading, receivers)                                                               \
+#define ADDING(name, line, branches, loading)                                                                          \
     static __attribute__((noinline)) void name(const struct receiver_group *group, struct run *runs,                   \
                                                struct pair_span pixels, real *re, real *im)                            \
     {                                                                                                                  \
-        add_taken((struct taking){line, branches, loading}, receivers, group, runs, pixels, re, im);                   \
+        add_taken((struct taking){line, branches, loading}, group, runs, pixels, re, im);                              \
     }
-#define PAIR(name, line, branches, loading)                                                                            \
-    ADDING(name##_one, line, branches, loading, 1)                                                                     \
-    ADDING(name##_group, line, branches, loading, GROUP_RECEIVERS)
 #define WAYS(name, line, branches)                                                                                     \
-    PAIR(name##_apart, line, branches, APART)                                                                          \
-    PAIR(name##_fours, line, branches, FOURS)                                                                          \
-    PAIR(name##_together, line, branches, TOGETHER)
+    ADDING(name##_apart, line, branches, APART)                                                                        \
+    ADDING(name##_fours, line, branches, FOURS)                                                                        \
+    ADDING(name##_together, line, branches, TOGETHER)
 WAYS(nearest, false, 1)
 WAYS(line, true, 1)
 WAYS(three, false, 3)
@@ -284,41 +281,23 @@ WAYS(five, false, 5)
 WAYS(six, false, 6)
 WAYS(any, false, group->table->branches)
 
-/* One record, and a whole group, by how samples are loaded. */
-struct ways {
-    adding *one[3], *group[3];
-};
+/* By how samples are loaded. */
+typedef adding *const ways[3];
 #define WAYS_OF(name)                                                                                                  \
     {                                                                                                                  \
-        {name##_apart_one, name##_fours_one, name##_together_one},                                                     \
-            {name##_apart_group, name##_fours_group, name##_together_group},                                           \
+        name##_apart, name##_fours, name##_together                                                                    \
     }
-static const struct ways ways_nearest = WAYS_OF(nearest), ways_line = WAYS_OF(line);
+static const ways ways_nearest = WAYS_OF(nearest), ways_line = WAYS_OF(line);
 /* The usual numbers of branches unroll, any other one works as well. */
 enum { USUAL_LEAST = 3, USUAL_MOST = 6 };
-static const struct ways ways_any = WAYS_OF(any),
-                         ways_usual[] = {WAYS_OF(three), WAYS_OF(four), WAYS_OF(five), WAYS_OF(six)};
+static const ways ways_any = WAYS_OF(any), ways_usual[] = {WAYS_OF(three), WAYS_OF(four), WAYS_OF(five), WAYS_OF(six)};
 
-static const struct ways *ways_choose(const struct bp_table *table)
+static adding *const *ways_choose(const struct bp_table *table)
 {
     const int branches = table->branches;
     if (table->reading != BP_BRANCHES)
-        return table->reading == BP_LINE ? &ways_line : &ways_nearest;
-    return branches < USUAL_LEAST || branches > USUAL_MOST ? &ways_any : &ways_usual[branches - USUAL_LEAST];
-}
-
-static void add_group(const struct receiver_group *group, enum loading loading, struct pair_span pixels,
-                      struct run *runs, real *re, real *im)
-{
-    const struct ways *ways = ways_choose(group->table);
-    if (group->receivers == GROUP_RECEIVERS) {
-        ways->group[loading](group, runs, pixels, re, im);
-        return;
-    }
-    struct receiver_group one = *group;
-    one.receivers = 1;
-    for (int g = 0; g < group->receivers; g++, one.row += one.layout.record)
-        ways->one[loading](&one, &runs[g], pixels, re, im);
+        return table->reading == BP_LINE ? ways_line : ways_nearest;
+    return branches < USUAL_LEAST || branches > USUAL_MOST ? ways_any : ways_usual[branches - USUAL_LEAST];
 }
 
 /* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a
@@ -360,7 +339,7 @@ void BP_GATHER(const struct receiver_group *group, enum loading loading, struct 
 {
     const struct bp_table *table = group->table;
     if (table->reading == BP_NEAREST || table->reading == BP_LINE || table->reading == BP_BRANCHES) {
-        add_group(group, loading, pixels, runs, re, im);
+        ways_choose(table)[loading](group, runs, pixels, re, im);
         return;
     }
     const size_t length = group->layout.apart;

@@ -132,10 +132,13 @@ INLINE void sum_taps(int residues, int width, int taps, int stride, const struct
             vi[p * width + k] += u * w[p * spread + (t)];                                                              \
         }                                                                                                              \
     }
-        for (int t = 0; t < taps; t++)
-            TAP(t)
-        for (int t = taps; t < part->rows[i]; t++)
-            TAP(t)
+        const int rows = part->rows[i];
+        int first = 0;
+        for (; first <= rows - 4; first += 4)
+            for (int t = first; t < first + 4; t++)
+                TAP(t)
+        for (; first < rows; first++)
+            TAP(first)
         for (int p = 0; p < residues; p++) {
             real cosine = part->wr[i * residues + p], sine = part->wi[i * residues + p];
             for (int k = 0; k < width; k++) {
@@ -174,21 +177,21 @@ static int find(const int *shift, int count, int bound)
     return low;
 }
 
-/* A block of `width` vectors of columns from j on. Works on copies: else each store of a sum makes the compiler reload
-   the pointers of a chunk and its scratch. */
-INLINE void sum_block(int residues, int width, int taps, const struct chunk *shared, int j)
+/* A block of `width` vectors of columns from j on; `few`: of one or two taps, 0 of more. Works on copies: else each
+   store of a sum makes the compiler reload the pointers of a chunk and its scratch. */
+INLINE void sum_block(int residues, int width, int few, const struct chunk *shared, int j)
 {
     const struct chunk own_chunk = *shared, *chunk = &own_chunk;
     const struct bp_row_scratch own_scratch = *chunk->scratch, *scratch = &own_scratch;
     const struct bp_row_group *groups = scratch->groups;
     const int origin = groups[chunk->begin].first;
     const real *sr = chunk->sr + j, *si = chunk->si + j;
-    const int stride = chunk->slab->ping_stride;
+    const int stride = chunk->slab->ping_stride, taps = few > 0 ? few : chunk->table->taps;
     OPAQUE(sr);
     OPAQUE(si);
     for (int g = chunk->begin; g < chunk->end; g++) {
         const struct bp_row_group *group = &groups[g];
-        const size_t first = (size_t)(group->first - origin), complex_taps = taps < 3 ? (size_t)taps : 1;
+        const size_t first = (size_t)(group->first - origin), complex_taps = few > 0 ? (size_t)few : 1;
         const size_t at = (size_t)group->residue * chunk->stride + (size_t)(j - chunk->raster->stored);
         struct part part = {.offset = scratch->offset + first,
                             .rows = scratch->rows + first,
@@ -205,63 +208,55 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
             part.begin = between(chunk->from - group->begin, group->from, group->to);
             part.end = between(chunk->to - group->begin, group->from, group->to);
         }
-        if (taps > 2)
+        if (few == 0)
             sum_taps(residues, width, taps, stride, &part, sr, si);
         else if (residues == 2)
-            sum_two(width, taps, stride, &part, sr, si);
+            sum_two(width, few, stride, &part, sr, si);
         else
-            sum_one(width, taps, stride, &part, sr, si);
+            sum_one(width, few, stride, &part, sr, si);
     }
 }
 
-/* The shipped kernels unroll, any other length works as well. Functions of their own: the compiler runs out of
-   registers where it inlines several. */
-#define BLOCK(name, taps, residues, width)                                                                             \
+/* Functions of their own: the compiler runs out of registers where it inlines several. */
+#define BLOCK(name, few, residues, width)                                                                              \
     static __attribute__((noinline)) void name##_##residues##_##width(const struct chunk *chunk, int j)                \
     {                                                                                                                  \
-        sum_block(residues, width, taps, chunk, j);                                                                    \
+        sum_block(residues, width, few, chunk, j);                                                                     \
     }
 /* clang-format off */
 #if VECTOR_BYTES == 64
-#define BLOCKS_FEW(name, taps) \
-    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
-    BLOCK(name, taps, 1, 4) BLOCK(name, taps, 1, 5) \
-    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
-    BLOCK(name, taps, 2, 4) BLOCK(name, taps, 2, 5)
+#define BLOCKS_FEW(name, few) \
+    BLOCK(name, few, 1, 1) BLOCK(name, few, 1, 2) BLOCK(name, few, 1, 3) \
+    BLOCK(name, few, 1, 4) BLOCK(name, few, 1, 5) \
+    BLOCK(name, few, 2, 1) BLOCK(name, few, 2, 2) BLOCK(name, few, 2, 3) \
+    BLOCK(name, few, 2, 4) BLOCK(name, few, 2, 5)
 #define TABLE_FEW(name) \
     {{name##_1_1, name##_1_2, name##_1_3, name##_1_4, name##_1_5}, \
      {name##_2_1, name##_2_2, name##_2_3, name##_2_4, name##_2_5}}
 #else
-#define BLOCKS_FEW(name, taps) \
-    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
-    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
+#define BLOCKS_FEW(name, few) \
+    BLOCK(name, few, 1, 1) BLOCK(name, few, 1, 2) BLOCK(name, few, 1, 3) \
+    BLOCK(name, few, 2, 1) BLOCK(name, few, 2, 2)
 #define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2}}
 #endif
-#define BLOCKS_MANY(name, taps) \
-    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
-    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
-    BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) \
-    BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
+#define BLOCKS_MANY(name, few) \
+    BLOCK(name, few, 1, 1) BLOCK(name, few, 1, 2) BLOCK(name, few, 1, 3) \
+    BLOCK(name, few, 2, 1) BLOCK(name, few, 2, 2) BLOCK(name, few, 2, 3) \
+    BLOCK(name, few, 3, 1) BLOCK(name, few, 3, 2) \
+    BLOCK(name, few, 4, 1) BLOCK(name, few, 5, 1) BLOCK(name, few, 6, 1)
 #define TABLE_MANY(name) \
     {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2}, \
      {name##_4_1}, {name##_5_1}, {name##_6_1}}
 /* clang-format on */
 BLOCKS_FEW(nearest, 1)
 BLOCKS_FEW(line, 2)
-BLOCKS_MANY(four, 4)
-BLOCKS_MANY(six, 6)
-BLOCKS_MANY(eight, 8)
-BLOCKS_MANY(any, chunk->table->taps)
+BLOCKS_MANY(many, 0)
 
 typedef void block_function(const struct chunk *chunk, int j);
 
-static const struct kernel {
-    int taps;                                             /* 0: any number */
-    block_function *block[BP_TOGETHER][BP_BLOCK_VECTORS]; /* [residues - 1][vectors - 1], as many as registers hold */
-} kernels[] = {
-    {1, TABLE_FEW(nearest)}, {2, TABLE_FEW(line)},   {4, TABLE_MANY(four)},
-    {6, TABLE_MANY(six)},    {8, TABLE_MANY(eight)}, {0, TABLE_MANY(any)},
-};
+/* Of one tap, of two, of more: [residues - 1][vectors - 1], as many as registers hold. */
+static block_function *const kernels[][BP_TOGETHER][BP_BLOCK_VECTORS] = {TABLE_FEW(nearest), TABLE_FEW(line),
+                                                                         TABLE_MANY(many)};
 
 /* Shifts below `end` bring pings to the same vectors of a block: `width` of them from column j on. */
 struct region {
@@ -286,12 +281,13 @@ INLINE struct region region_from(int s, int pings, int j, int last)
 
 /* All columns, in blocks of equal width. If the lead is as wide as a block, a shift with pings for some of its vectors
    is summed for all of them (zeros for the others); else only for those with pings. */
-static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
+static void sum_columns(struct chunk *chunk)
 {
     const int columns = chunk->raster->residue_columns, pings = chunk->raster->pings;
     const struct pair_span *shown = &chunk->raster->shown;
     const struct bp_row_group *groups = chunk->scratch->groups;
-    block_function *const *block = kernel->block[groups[chunk->begin].residues - 1];
+    const int taps = chunk->table->taps, residues = groups[chunk->begin].residues;
+    block_function *const *block = kernels[taps < 3 ? taps - 1 : 2][residues - 1];
     int least = INT_MAX, most = INT_MIN, widest = BP_BLOCK_VECTORS;
     while (!block[widest - 1])
         widest--;
@@ -377,15 +373,12 @@ INLINE void sum_apart(const struct chunk *chunk, int taps)
 
 void SUMS_ADD(struct chunk *chunk, int rows)
 {
-    const int taps = chunk->table->taps;
-    const struct kernel *kernel = kernels;
     if (chunk->table->reading == BP_BRANCHES) {
         BRANCHES_ADD(chunk, rows);
         return;
     }
-    while (kernel->taps != 0 && kernel->taps != taps)
-        kernel++;
 #if !APART_INSIDE
+    const int taps = chunk->table->taps;
     if (taps <= 2 && chunk->scratch->groups[chunk->begin].residues == 2) {
         if (taps == 1)
             sum_apart(chunk, 1);
@@ -393,5 +386,5 @@ void SUMS_ADD(struct chunk *chunk, int rows)
             sum_apart(chunk, 2);
     }
 #endif
-    sum_columns(kernel, chunk);
+    sum_columns(chunk);
 }
