@@ -11,18 +11,32 @@ enum { BUCKETS = 1 << 16 };
 /* Applied to each pixel's magnitude over the peak's. */
 typedef void (*pixel_function)(void *sums, double ratio);
 
+/* hypot, which cannot overflow, takes ten times as long as a root: squares of floats fit. */
+static double magnitude_of(const struct image *image, int p, int i, int j)
+{
+    const double complex value = image_pixel(image, p, i, j);
+    return image->precision == PRECISION_FLOAT ? sqrt(creal(value) * creal(value) + cimag(value) * cimag(value))
+                                               : cabs(value);
+}
+
 static void pixels_visit(const struct image *image, double peak, pixel_function function, void *sums)
 {
     for (int p = 0; p < image->patch_count; p++)
         for (int i = 0; i < image->patches[p].r_count; i++)
             for (int j = 0; j < image->patches[p].x_count; j++)
-                function(sums, cabs(image_pixel(image, p, i, j)) / peak);
+                function(sums, magnitude_of(image, p, i, j) / peak);
 }
+
+struct peak {
+    double magnitude;
+    bool finite; /* all pixels */
+};
 
 static void peak_visit(void *sums, double magnitude)
 {
-    double *peak = sums;
-    *peak = fmax(*peak, magnitude);
+    struct peak *peak = sums;
+    peak->magnitude = magnitude > peak->magnitude ? magnitude : peak->magnitude;
+    peak->finite = peak->finite && isfinite(magnitude);
 }
 
 struct brightest metrics_brightest(const struct image *image)
@@ -31,27 +45,13 @@ struct brightest metrics_brightest(const struct image *image)
     for (int p = 0; p < image->patch_count; p++)
         for (int i = 0; i < image->patches[p].r_count; i++)
             for (int j = 0; j < image->patches[p].x_count; j++) {
-                const double magnitude = cabs(image_pixel(image, p, i, j));
+                const double magnitude = magnitude_of(image, p, i, j);
                 if (magnitude > brightest.magnitude && isfinite(magnitude)) {
                     const struct vector place = grid_point(&image->patches[p], i, j);
                     brightest = (struct brightest){magnitude, place.x, place.y};
                 }
             }
     return brightest;
-}
-
-struct moments {
-    double count, power, power_squared, power_log; /* of the powers I, sums of I, I^2, I ln I */
-};
-
-static void moments_visit(void *sums, double ratio)
-{
-    struct moments *moments = sums;
-    const double power = ratio * ratio;
-    moments->count++;
-    moments->power += power;
-    moments->power_squared += power * power;
-    moments->power_log += power > 0 ? power * log(power) : 0;
 }
 
 /* The median by the bits of floats: floats >= 0 sort as their bits do. First the upper half, then the lower one. */
@@ -72,6 +72,22 @@ static void histogram_visit(void *sums, double ratio)
         histogram->counts[bits & (BUCKETS - 1)]++;
 }
 
+struct moments {
+    double count, power, power_squared, power_log; /* of the powers I, sums of I, I^2, I ln I */
+    struct histogram *histogram;
+};
+
+static void moments_visit(void *sums, double ratio)
+{
+    struct moments *moments = sums;
+    const double power = ratio * ratio;
+    moments->count++;
+    moments->power += power;
+    moments->power_squared += power * power;
+    moments->power_log += power > 0 ? power * log(power) : 0;
+    histogram_visit(moments->histogram, ratio);
+}
+
 /* The bucket of the value of this rank; the rank becomes that within the bucket. */
 static uint32_t bucket_find(const struct histogram *histogram, uint64_t *rank)
 {
@@ -81,32 +97,26 @@ static uint32_t bucket_find(const struct histogram *histogram, uint64_t *rank)
     return bucket;
 }
 
-static double median_find(const struct image *image, double peak, double count)
+struct sharpness metrics_sharpness(const struct image *image)
 {
     static struct histogram histogram;
-    uint64_t rank = (uint64_t)(count / 2);
+    struct moments sums = {.histogram = &histogram};
+    struct peak peak = {0, true};
     float median;
+    pixels_visit(image, 1, peak_visit, &peak);
+    if (!(peak.magnitude > 0) || !peak.finite)
+        return (struct sharpness){NAN, NAN, NAN};
     memset(&histogram, 0, sizeof histogram);
     histogram.upper = BUCKETS;
-    pixels_visit(image, peak, histogram_visit, &histogram);
+    pixels_visit(image, peak.magnitude, moments_visit, &sums);
+    const double mean = sums.power / sums.count;
+    uint64_t rank = (uint64_t)(sums.count / 2);
     const uint32_t upper = bucket_find(&histogram, &rank);
     memset(histogram.counts, 0, sizeof histogram.counts);
     histogram.upper = upper;
-    pixels_visit(image, peak, histogram_visit, &histogram);
+    pixels_visit(image, peak.magnitude, histogram_visit, &histogram);
     const uint32_t bits = upper << 16 | bucket_find(&histogram, &rank);
     memcpy(&median, &bits, sizeof median);
-    return median;
-}
-
-struct sharpness metrics_sharpness(const struct image *image)
-{
-    struct moments sums = {0};
-    double peak = 0;
-    pixels_visit(image, 1, peak_visit, &peak);
-    if (!(peak > 0 && peak < INFINITY) || !image_is_finite(image))
-        return (struct sharpness){NAN, NAN, NAN};
-    pixels_visit(image, peak, moments_visit, &sums);
-    const double mean = sums.power / sums.count, median = median_find(image, peak, sums.count);
     return (struct sharpness){
         .entropy = log(sums.power) - sums.power_log / sums.power,
         .contrast = sqrt(fmax(0, sums.power_squared / sums.count - mean * mean)) / mean,
