@@ -247,6 +247,10 @@ INLINE void add_taken(struct taking taking, const struct receiver_group *group, 
     if (i == count)
         return;
     vector_real x = {0}, y = {0};
+    for (int k = 0; i + k < count; k++) { /* as whole vectors: a pixel's bits do not depend on where runs end */
+        x[k] = re[i + k];
+        y[k] = im[i + k];
+    }
     for (int g = 0; g < receivers; g++) {
         for (int k = count; k < i + LANES; k++) { /* the last vector's other pixels read valid places */
             runs[g].sample[k] = runs[g].sample[count - 1];
@@ -255,8 +259,8 @@ INLINE void add_taken(struct taking taking, const struct receiver_group *group, 
         take(taking, from[g], layout.apart, &runs[g], i, &x, &y);
     }
     for (int k = 0; i + k < count; k++) {
-        re[i + k] += x[k];
-        im[i + k] += y[k];
+        re[i + k] = x[k];
+        im[i + k] = y[k];
     }
 }
 
