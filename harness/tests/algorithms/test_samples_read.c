@@ -16,7 +16,7 @@
 #include "range_migration/rma_engine.h"
 #include "tests/support.h"
 
-enum { SAMPLES = 1500, PULSE = 90, PINGS = 13, RECEIVERS = 3, PATCHES = 3 };
+enum { SAMPLES = 1500, PULSE = 90, PINGS = 13, RECEIVERS = 5, PATCHES = 3 };
 
 /* Patches of a record that holds 9 to 46.5 m, seen by a straight track. */
 static const struct patch_case {
