@@ -11,7 +11,7 @@ enum { BUCKETS = 1 << 16 };
 /* Applied to each pixel's magnitude over the peak's. */
 typedef void (*pixel_function)(void *sums, double ratio);
 
-/* hypot, which cannot overflow, takes ten times as long as a root: squares of floats fit. */
+/* Without hypot, which takes longer than all else here, where squares fit. */
 static double magnitude_of(const struct image *image, int p, int i, int j)
 {
     const double complex value = image_pixel(image, p, i, j);

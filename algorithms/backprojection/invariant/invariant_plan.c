@@ -324,10 +324,10 @@ static void pieces_plan(const struct bp *bp, struct bp_raster *raster)
     raster->reach = limit > 0 && mach <= BP_SLOW ? piece_reach(mach, limit * c / (2 * M_PI * frequency)) : 0;
 }
 
-/* The wanted columns, and those that a block of vectors may sum beside them. Returns the number of those with sums. */
+/* The wanted columns, and those that a vector may sum beside them. Returns the number of those with sums. */
 static int columns_plan(struct bp_raster *raster, const struct pixel_window *w)
 {
-    enum { BESIDE = BP_BLOCK_VECTORS * BP_LANES_MOST };
+    enum { BESIDE = BP_LANES_MOST };
     const int first = w->column / raster->ratio, end = (w->column + w->columns - 1) / raster->ratio + 1;
     raster->shown = (struct pair_span){first, end};
     raster->stored = first > BESIDE ? (first - BESIDE) / BP_LANES_MOST * BP_LANES_MOST : 0;

@@ -145,9 +145,9 @@ struct bp_raster {
     double grid_first, grid_step; /* m */
     int columns;                  /* of the grid */
     int residue_columns;          /* of one residue at the most: ceil(columns/ratio) */
-    struct pair_span shown;       /* wanted columns of a residue: blocks without any are left out */
+    struct pair_span shown;       /* wanted columns of a residue: vectors without any are left out */
     double limit;                 /* aperture limit */
-    int stored;                   /* the first column with sums: blocks reach beyond the wanted ones */
+    int stored;                   /* the first column with sums: vectors reach beyond the wanted ones */
     int rows;                     /* image rows summed together: with Farrow branches and few residues, else 1 */
     int together; /* residues summed together at most, 2 for up to two taps, 1 for the nearest fine step */
     const struct piece_fit *fit;
