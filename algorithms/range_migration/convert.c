@@ -182,7 +182,7 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
     const int column = ((rma->spacing < 0 ? -turns : turns) % period + period) % period;
     const bool add = rma->options.sum == RMA_SUM_BEFORE;
     const size_t block = (add ? 1 : (size_t)rma->receivers) * row;
-    real *data = (real *)swath->data + (size_t)column * (size_t)rma->receivers * row;
+    real *data = (real *)swath->data + rma_row(swath, 0, column);
     if (!rma->converts) {
         memcpy(sums, data, row * sizeof *sums);
         return;
@@ -205,7 +205,7 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
     stage_end(w, RMA_DIFFERENTIAL);
     for (int k = w->line.begin / LANES * LANES; k < swath->row; k += SPAN) {
         const int n = swath->row - k < SPAN ? swath->row - k : SPAN;
-        const struct rows in = {data + 2 * k, row}, none = {NULL, 0};
+        const struct rows in = {data + 2 * k, swath->apart}, none = {NULL, 0};
         real *out = sums + 2 * k, *own = out + (size_t)reference * block;
         /* The reference block has no differential: its sum, or its rows, come with the bulk. */
         struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};

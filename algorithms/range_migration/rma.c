@@ -299,14 +299,12 @@ static void migrate(const struct rma *rma, const struct rma_swath *swath, struct
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
     struct rma *rma = plan;
-    static const char *const first_stages[] = {"compress", "map"};
-    double seconds[2] = {0};
-    transform(rma)->compress(rma, ISA_CHOOSE(rma_map, rma->problem.precision),
-                             stretch_samples(&rma->stretch, echoes->samples), seconds);
-    stages_share(stages, 2, first_stages, seconds);
+    static const char *const first_stages[RMA_SPREADS] = {"compress", "map", "spread"};
+    double seconds[RMA_SPREADS];
+    transform(rma)->receive(rma, ISA_CHOOSE(rma_map, rma->problem.precision),
+                            stretch_samples(&rma->stretch, echoes->samples), seconds);
+    stages_share(stages, RMA_SPREADS, first_stages, seconds);
     for (const struct rma_swath *swath = rma->swaths; swath < rma->swaths + rma->swath_count; swath++) {
-        transform(rma)->spread(rma, swath);
-        stages_end(stages, "spread");
         const double done = (double)(swath - rma->swaths) / rma->swath_count;
         progress_part(done, done + 1.0 / rma->swath_count, swath->wavenumbers / rma_turns(rma));
         migrate(rma, swath, stages);

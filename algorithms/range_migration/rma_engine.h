@@ -7,10 +7,10 @@
    last dimension is contiguous. M receivers; P = period, the pings and zeros after them; Q = M P wavenumbers; `row`
    bins contain the band of a swath and fill whole vectors; N = needed, the blocks that a swath's rows use.
 
-   compress      [pings][M][samples] -> [pings][M][row] for each swath, in swath->data
+   compress      [pings][M][samples] -> [M][pings][row] for each swath, in swath->data
                  each record through the matched filter, by transforms of record_length (unless the echoes come
                  compressed); its stretch for the swath, ends tapered, through an FFT of `length`; the band is kept
-   spread        [pings][M][row] -> [P][M][row], in place
+   spread        [M][pings][row] -> [M][P][row], in place
                  an FFT over the pings for each receiver and bin; from here on re and im take turns by vectors
 
    From here to focus, a thread works on RMA_TILE wavenumbers in turn, in the order of rma_wavenumber. Wavenumber q
@@ -36,7 +36,7 @@
 
    Delay compensation (delay_compensation.h) has other stages up to there, and rows of samples in place of bins:
 
-   compress      [pings][M][samples] -> [pings][M][row]
+   compress      [pings][M][samples] -> [M][pings][row]
                  each record through the matched filter, between zeros
    map           mapped onto the swath's samples by taps
    spread        as above, for each sample
@@ -189,7 +189,10 @@ struct rma_swath {
     int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
     int reference;       /* index into `blocks`: the bulk correction is this block's */
 
-    void *data; /* [period][receivers][row]: spectra, vectors of re and im in turn */
+    void *data; /* [receivers][period][row]: spectra, vectors of re and im in turn (rma_row) */
+    /* Reals from a receiver's to the next one's: an odd number of vectors, or receivers a power of two apart would
+       share sets of the cache. */
+    size_t apart;
     struct rma_map map;
     void *apodization; /* real [stolt_length]: 1/transform of the Stolt kernel, 1/length included */
     void *range_forward, *range_inverse, *stolt_forward, *azimuth_forward;
@@ -316,6 +319,12 @@ static inline double rma_shift(const struct rma_swath *swath, const struct rma_p
     return cycles - floor(cycles + 0.5);
 }
 
+/* Where a receiver's row of ping or azimuth FFT's bin k begins in `data`, in reals. */
+static inline size_t rma_row(const struct rma_swath *swath, int receiver, int k)
+{
+    return (size_t)receiver * swath->apart + 2 * (size_t)k * (size_t)swath->row;
+}
+
 /* The turns that a thread takes at once: with delay compensation, those that read the same spectra. */
 static inline int rma_turns(const struct rma *rma)
 {
@@ -379,11 +388,12 @@ typedef void rma_map_function(const struct rma *rma, const struct rma_swath *swa
 ISA_DECLARE(rma_map_function, rma_map);
 
 /* ---- rma_transform.c ---- */
+enum rma_first_stage { RMA_COMPRESS, RMA_MAP, RMA_SPREAD, RMA_SPREADS };
 struct rma_transform {
     enum status (*plan)(struct rma *rma); /* memory, tables and FFT plans */
-    /* `map` is only called where the plan compensates delays; the threads' seconds are added: compressing, mapping. */
-    void (*compress)(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[2]);
-    void (*spread)(const struct rma *rma, const struct rma_swath *swath);
+    /* The stages up to `spread`, of all swaths; `map` is only called where the plan compensates delays. The threads'
+       seconds are added. */
+    void (*receive)(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[RMA_SPREADS]);
     void (*inverse)(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels);
 };
 extern const struct rma_transform rma_transform_float, rma_transform_double;

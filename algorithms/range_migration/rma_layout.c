@@ -336,10 +336,13 @@ static enum status lay_swaths(struct rma *rma)
         store_take(&rma->store, (size_t)rma->block_count * (size_t)rma->swath_count, sizeof *rma->block_list, 0);
     if (!rma->block_list)
         return status_set(STATUS_FAILED, "no memory for %d blocks", rma->block_count);
+    const size_t lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
     enum status status = STATUS_OK;
     for (int n = 0; n < rma->swath_count; n++) {
         for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
             status = steps[k](rma, &rma->swaths[n]);
+        if (status == STATUS_OK)
+            rma->swaths[n].apart = ((size_t)rma->swaths[n].period * (size_t)rma->swaths[n].row / lanes | 1) * 2 * lanes;
         rma_blocks_choose(rma, &rma->swaths[n], rma->block_list + n * rma->block_count);
     }
     return status;

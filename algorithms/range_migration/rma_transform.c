@@ -106,8 +106,7 @@ static void azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct 
 static void plan_swath(struct rma *rma, struct rma_swath *swath)
 {
     complex_real *lines = rma->scratch, *turned = behind(lines, BLOCKS * LANES * (size_t)swath->period);
-    swath->data = store_take(&rma->store, (size_t)swath->period * (size_t)rma->receivers,
-                             2 * (size_t)swath->row * sizeof(real), 1);
+    swath->data = store_take(&rma->store, (size_t)rma->receivers * swath->apart, sizeof(real), 1);
     swath->apodization = store_take(&rma->store, (size_t)swath->stolt_length, sizeof(real), 1);
     if (rma->delay)
         REAL_NAME(rma_map_plan)(rma, swath);
@@ -216,84 +215,90 @@ static real *padded(const struct rma *rma, const real *record)
     return out;
 }
 
-/* Pulse compression by a linear correlation, then each swath's cut. Records of a receiver follow one another, so that
-   the tables of its map stay in the cache. */
-static void compress(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[2])
+/* Ping k of a receiver: pulse compression by a linear correlation, then each swath's cut. */
+static void compress(const struct rma *rma, rma_map_function *map, const void *samples, int receiver, int k,
+                     double seconds[RMA_SPREADS])
 {
-    double compressing = 0, mapping = 0;
     const size_t all = 2 * (size_t)rma->samples, n = 2 * (size_t)rma->read, length = 2 * (size_t)rma->record_length;
-#pragma omp parallel for schedule(static) num_threads(rma->threads) reduction(+ : compressing, mapping)
-    for (int turn = 0; turn < rma->pings * rma->receivers; turn++) {
-        const int receiver = turn / rma->pings, k = turn % rma->pings * rma->receivers + receiver;
-        const real *record = (const real *)samples + all * (size_t)k + 2 * (size_t)rma->from;
-        const double begun = clock_monotonic();
-        if (length > 0) {
-            real *wave = scratch_of(rma, RMA_RECORD), *bins = scratch_of(rma, RMA_TRANSFORMED);
-            memcpy(wave, record, n * sizeof *wave);
-            memset(wave + n, 0, (length - n) * sizeof *wave);
-            FFTW(execute_dft)(rma->record_forward, (complex_real *)wave, (complex_real *)bins);
-            multiply(bins, rma->filter, rma->record_length);
-            FFTW(execute_dft)(rma->record_inverse, (complex_real *)bins, (complex_real *)wave);
-            record = wave;
-        }
-        const real *between = rma->delay ? padded(rma, record) : NULL;
-        const real weight = (real)stretch_weight(&rma->stretch, turn % rma->pings);
-        const double compressed = clock_monotonic();
-        for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
-            real *row = (real *)s->data + 2 * (size_t)s->row * (size_t)k;
-            if (rma->delay)
-                map(rma, s, receiver, between, row);
-            else
-                cut(rma, s, record, row);
-            for (size_t i = 0; weight < 1 && i < 2 * (size_t)s->row; i++)
-                row[i] *= weight;
-        }
-        compressing += compressed - begun;
-        mapping += clock_monotonic() - compressed;
+    const real *record = (const real *)samples + all * ((size_t)k * (size_t)rma->receivers + (size_t)receiver);
+    const double begun = clock_monotonic();
+    record += 2 * (size_t)rma->from;
+    if (length > 0) {
+        real *wave = scratch_of(rma, RMA_RECORD), *bins = scratch_of(rma, RMA_TRANSFORMED);
+        memcpy(wave, record, n * sizeof *wave);
+        memset(wave + n, 0, (length - n) * sizeof *wave);
+        FFTW(execute_dft)(rma->record_forward, (complex_real *)wave, (complex_real *)bins);
+        multiply(bins, rma->filter, rma->record_length);
+        FFTW(execute_dft)(rma->record_inverse, (complex_real *)bins, (complex_real *)wave);
+        record = wave;
     }
-    seconds[0] = compressing + (rma->delay ? 0 : mapping);
-    seconds[1] = rma->delay ? mapping : 0;
+    const real *between = rma->delay ? padded(rma, record) : NULL;
+    const real weight = (real)stretch_weight(&rma->stretch, k);
+    const double compressed = clock_monotonic();
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+        real *row = (real *)s->data + rma_row(s, receiver, k);
+        if (rma->delay)
+            map(rma, s, receiver, between, row);
+        else
+            cut(rma, s, record, row);
+        for (size_t i = 0; weight < 1 && i < 2 * (size_t)s->row; i++)
+            row[i] *= weight;
+    }
+    seconds[RMA_COMPRESS] += compressed - begun;
+    seconds[rma->delay ? RMA_MAP : RMA_COMPRESS] += clock_monotonic() - compressed;
 }
 
-/* Pings' samples [vector][ping][LANES], transformed, to rows of vectors. */
-static void spread_strip(const struct rma_swath *swath, const complex_real *lines, complex_real *turned, size_t vectors,
-                         size_t stride, real *data)
+/* A receiver's azimuth FFT over the pings and the zeros after them, in place, of some vectors of samples or bins: the
+   complex numbers of a vector become its real parts and then its imaginary parts. */
+static void spread(const struct rma *rma, const struct rma_swath *swath, int receiver, int strip,
+                   double seconds[RMA_SPREADS])
 {
-    const size_t period = (size_t)swath->period;
-    for (size_t v = 0; v < vectors; v++)
-        FFTW(execute_dft)
-    (swath->azimuth_forward, (complex_real *)lines + v * period * LANES, turned + v * period * LANES);
+    const double begun = clock_monotonic();
+    const size_t row = 2 * (size_t)swath->row, pings = (size_t)rma->pings, period = (size_t)swath->period;
+    const size_t first = (size_t)strip * BLOCKS, left = row / (2 * LANES) - first,
+                 count = left < BLOCKS ? left : BLOCKS;
+    complex_real *lines = (complex_real *)scratch_of(rma, 0), *turned = behind(lines, BLOCKS * LANES * period);
+    real *data = (real *)swath->data + rma_row(swath, receiver, 0) + first * 2 * LANES;
+    for (size_t p = 0; p < pings; p++)
+        for (size_t v = 0; v < count; v++)
+            memcpy(lines + (v * period + p) * LANES, data + p * row + v * 2 * LANES, LANES * sizeof *lines);
+    for (size_t v = 0; v < count; v++) {
+        memset(lines + (v * period + pings) * LANES, 0, (period - pings) * LANES * sizeof *lines);
+        FFTW(execute_dft)(swath->azimuth_forward, lines + v * period * LANES, turned + v * period * LANES);
+    }
     for (size_t p = 0; p < period; p++)
-        for (size_t v = 0; v < vectors; v++) {
+        for (size_t v = 0; v < count; v++) {
             const real *from = (const real *)(turned + (v * period + p) * LANES);
-            real *to = data + p * stride + v * 2 * LANES;
+            real *to = data + p * row + v * 2 * LANES;
             for (size_t l = 0; l < LANES; l++) {
                 to[l] = from[2 * l];
                 to[LANES + l] = from[2 * l + 1];
             }
         }
+    seconds[RMA_SPREAD] += clock_monotonic() - begun;
 }
 
-/* Azimuth FFT over the pings and the zeros after them, in place; the complex numbers of a vector become its real
-   parts and then its imaginary parts. */
-static void spread(const struct rma *rma, const struct rma_swath *swath)
+/* A receiver for each thread at a time, so that its records are still in the cache when they are transformed over the
+   pings, and the tables of its map for all of them. */
+static void receive(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[RMA_SPREADS])
 {
-    const int vectors = swath->row / LANES, strips = (vectors + BLOCKS - 1) / BLOCKS;
-    const size_t row = 2 * (size_t)swath->row, pings = (size_t)rma->pings, period = (size_t)swath->period;
-#pragma omp parallel for schedule(static) collapse(2) num_threads(rma->threads)
-    for (int m = 0; m < rma->receivers; m++)
-        for (int s = 0; s < strips; s++) {
-            const size_t count = (size_t)(vectors - s * BLOCKS < BLOCKS ? vectors - s * BLOCKS : BLOCKS);
-            complex_real *lines = (complex_real *)scratch_of(rma, 0);
-            real *data = (real *)swath->data + (size_t)m * row + (size_t)s * BLOCKS * 2 * LANES;
-            const size_t ping = (size_t)rma->receivers * row;
-            for (size_t p = 0; p < pings; p++)
-                for (size_t v = 0; v < count; v++)
-                    memcpy(lines + (v * period + p) * LANES, data + p * ping + v * 2 * LANES, LANES * sizeof *lines);
-            for (size_t v = 0; v < count; v++)
-                memset(lines + (v * period + pings) * LANES, 0, (period - pings) * LANES * sizeof *lines);
-            spread_strip(swath, lines, behind(lines, BLOCKS * LANES * period), count, ping, data);
+    double sums[RMA_SPREADS] = {0};
+#pragma omp parallel num_threads(rma->threads) reduction(+ : sums[:RMA_SPREADS])
+    for (int first = 0, end; first < rma->receivers; first = end) {
+        end = rma->receivers - first < rma->threads ? rma->receivers : first + rma->threads;
+#pragma omp for schedule(static) collapse(2)
+        for (int m = first; m < end; m++)
+            for (int k = 0; k < rma->pings; k++)
+                compress(rma, map, samples, m, k, sums);
+        for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+            const int strips = (s->row / LANES + BLOCKS - 1) / BLOCKS;
+#pragma omp for schedule(static) collapse(2)
+            for (int m = first; m < end; m++)
+                for (int strip = 0; strip < strips; strip++)
+                    spread(rma, s, m, strip, sums);
         }
+    }
+    memcpy(seconds, sums, sizeof sums);
 }
 
 static void inverse(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels)
@@ -331,4 +336,4 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
     }
 }
 
-const struct rma_transform REAL_NAME(rma_transform) = {plan, compress, spread, inverse};
+const struct rma_transform REAL_NAME(rma_transform) = {plan, receive, inverse};

@@ -26,16 +26,39 @@ static inline __attribute__((always_inline)) struct fit_cell bin_exact(const voi
                              b->weight * frequency / (root * sqrt(kappa))}; /* F/(kappa^1.5) dF/dK */
 }
 
+/* Places between a spectrum's bins, with the weights there. */
+struct places {
+    int first[SPAN], weights[SPAN]; /* the first tap's bin; the first weight in the kernel's table */
+    real between[SPAN];             /* of these weights and the next ones */
+};
+
+/* Position counts from the first guard bin. The last place is repeated up to a multiple of four. */
+static inline __attribute__((always_inline)) void places_fill(const double *restrict position, int n, int taps,
+                                                              struct places *restrict places)
+{
+#pragma omp simd
+    for (int j = 0; j < n; j++) {
+        const int bin = (int)position[j];
+        const double interval = (position[j] - bin) * RMA_INTERVALS;
+        const int whole = (int)interval;
+        places->first[j] = bin + 1 - taps / 2;
+        places->weights[j] = whole * taps;
+        places->between[j] = (real)(interval - whole);
+    }
+    for (int j = n; j % 4 != 0; j++) {
+        places->first[j] = places->first[n - 1];
+        places->weights[j] = places->weights[n - 1];
+        places->between[j] = places->between[n - 1];
+    }
+}
+
 /* Sums of eight lanes, each in four lanes: of the real parts, then of the imaginary ones. `taps`, a multiple of eight,
    is a constant where this is inlined. */
-static inline __attribute__((always_inline)) void eights(const struct rma *rma, const real *restrict spectrum,
-                                                         int length, int taps, double position, vec8 *sums)
+static inline __attribute__((always_inline)) void eights(const real *kernel, const real *restrict spectrum, int length,
+                                                         int taps, const struct places *places, int j, vec8 *sums)
 {
-    const int bin = (int)position, first = bin + 1 - taps / 2;
-    const double interval = (position - bin) * RMA_INTERVALS;
-    const real *a = (const real *)rma->kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
-    const real *re = spectrum + first, *im = re + length + 2 * RMA_GUARD;
-    const real u = (real)(interval - (int)interval);
+    const real *a = kernel + places->weights[j], *b = a + taps, u = places->between[j];
+    const real *re = spectrum + places->first[j], *im = re + length + 2 * RMA_GUARD;
     vec8 vr = {0}, vi = {0};
     for (int k = 0; k < taps; k += EIGHT) {
         const vec8 low = *(const vec8 *)(a + k), weight = low + u * (*(const vec8 *)(b + k) - low);
@@ -46,19 +69,16 @@ static inline __attribute__((always_inline)) void eights(const struct rma *rma, 
             + __builtin_shufflevector(vr, vi, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
-/* As `interpolate`, four bins at a time: they share the sum over a vector's lanes. SPAN positions have room for the
-   last four, which repeat the last one. */
-static inline __attribute__((always_inline)) void interpolate_fours(const struct rma *rma,
-                                                                    const real *restrict spectrum, int length, int taps,
-                                                                    int n, double *restrict position, real *restrict re,
+/* As `interpolate`, four bins at a time: they share the sum over a vector's lanes. */
+static inline __attribute__((always_inline)) void interpolate_fours(const real *kernel, const real *restrict spectrum,
+                                                                    int length, int taps, int n,
+                                                                    const struct places *places, real *restrict re,
                                                                     real *restrict im)
 {
-    for (int j = n; j % 4 != 0; j++)
-        position[j] = position[n - 1];
     for (int j = 0; j < n; j += 4) {
         vec8 half[4], quarter[2];
         for (int k = 0; k < 4; k++)
-            eights(rma, spectrum, length, taps, position[j + k], &half[k]);
+            eights(kernel, spectrum, length, taps, places, j + k, &half[k]);
         for (int k = 0; k < 2; k++)
             quarter[k] = __builtin_shufflevector(half[2 * k], half[2 * k + 1], 0, 1, 8, 9, 4, 5, 12, 13)
                          + __builtin_shufflevector(half[2 * k], half[2 * k + 1], 2, 3, 10, 11, 6, 7, 14, 15);
@@ -69,19 +89,15 @@ static inline __attribute__((always_inline)) void interpolate_fours(const struct
     }
 }
 
-/* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
-   this is inlined. */
-static inline __attribute__((always_inline)) void interpolate(const struct rma *rma, const real *restrict spectrum,
-                                                              int length, int taps, int n,
-                                                              const double *restrict position, real *restrict re,
-                                                              real *restrict im)
+/* Values of the spectrum at some places. `taps` is a constant where this is inlined. */
+static inline __attribute__((always_inline)) void interpolate(const real *kernel, const real *restrict spectrum,
+                                                              int length, int taps, int n, const struct places *places,
+                                                              real *restrict re, real *restrict im)
 {
-    const real *kernel = rma->kernel, *imaginary = spectrum + length + 2 * RMA_GUARD;
+    const real *imaginary = spectrum + length + 2 * RMA_GUARD;
     for (int j = 0; j < n; j++) {
-        int bin = (int)position[j], first = bin + 1 - taps / 2;
-        double interval = (position[j] - bin) * RMA_INTERVALS;
-        const real *a = kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
-        real u = (real)(interval - (int)interval);
+        const real *a = kernel + places->weights[j], *b = a + taps, u = places->between[j];
+        const int first = places->first[j];
         real vr = 0, vi = 0;
         for (int k = 0; k < taps; k++) {
             real weight = a[k] + u * (b[k] - a[k]);
@@ -152,15 +168,17 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
     real *wave = buffer(w, RMA_WAVE), *rows = buffer(w, RMA_TRANSFORMED);
     memset(wave, 0, 2 * (size_t)patch->length * sizeof *wave);
     double position[SPAN], cycles[SPAN], weight[SPAN];
+    struct places places;
     real re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
     for (long long j0 = first; j0 <= last; j0 += SPAN) {
         const int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
         fit_cells(fit, bin_exact, &bins, (double)j0, n, position, cycles, weight);
+        places_fill(position, n, rma->taps, &places);
         switch (rma->taps) {
-        case 4: interpolate(rma, z, length, 4, n, position, re, im); break;
-        case 8: interpolate_fours(rma, z, length, 8, n, position, re, im); break;
-        case 16: interpolate_fours(rma, z, length, 16, n, position, re, im); break;
-        default: interpolate(rma, z, length, rma->taps, n, position, re, im); break;
+        case 4: interpolate(rma->kernel, z, length, 4, n, &places, re, im); break;
+        case 8: interpolate_fours(rma->kernel, z, length, 8, n, &places, re, im); break;
+        case 16: interpolate_fours(rma->kernel, z, length, 16, n, &places, re, im); break;
+        default: interpolate(rma->kernel, z, length, rma->taps, n, &places, re, im); break;
         }
         stage_end(w, RMA_STOLT);
 #pragma omp simd

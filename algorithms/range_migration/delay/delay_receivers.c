@@ -23,7 +23,7 @@
 struct group {
     const struct rma *rma;
     const struct rma_swath *swath;
-    const real *data; /* [receivers][row] */
+    const real *data; /* of the first receiver */
     int classes;
     const real *turns[RMA_CLASSES]; /* [receivers][2]: of a class's first wavenumber */
     int begin[RMA_CLASSES + 1];     /* of its members */
@@ -65,7 +65,7 @@ static inline __attribute__((always_inline)) void partial_sums(const struct grou
                                                                int terms, vec sums[RMA_FOLD][DELAY_TERMS][2])
 {
     const struct rma *rma = g->rma;
-    const size_t row = 2 * (size_t)g->swath->row;
+    const size_t apart = g->swath->apart;
     const int receivers = rma->receivers, fold = rma->delay->fold, half = fold / 2;
     const real *basis = rma->delay->basis;
     for (int c = 0; c < fold; c++) {
@@ -73,7 +73,7 @@ static inline __attribute__((always_inline)) void partial_sums(const struct grou
         for (int q = 0; q < terms; q++)
             re[q] = im[q] = (vec){0};
         for (int m = c; m < receivers; m += fold) {
-            const vec xr = *(const vec *)(x + (size_t)m * row), xi = *(const vec *)(x + (size_t)m * row + LANES);
+            const vec xr = *(const vec *)(x + (size_t)m * apart), xi = *(const vec *)(x + (size_t)m * apart + LANES);
             const real *turn = turns + 2 * (size_t)m;
             const vec pr = xr * turn[0] - xi * turn[1], pi = xr * turn[1] + xi * turn[0];
             for (int q = 0; q < terms; q++) {
@@ -134,12 +134,12 @@ static inline __attribute__((always_inline)) void member_store(const struct grou
 static inline __attribute__((always_inline)) void group_add(const struct group *g, int terms)
 {
     const int blocks = (g->swath->held + LANES - 1) / LANES;
-    const size_t row = 2 * (size_t)g->swath->row;
+    const size_t apart = g->swath->apart;
     for (int block = 0; block < blocks; block++) {
         const real *x = g->data + 2 * (size_t)block * LANES;
         for (int m = 0; m < g->rma->receivers; m++) { /* more streams than the processor prefetches itself */
-            __builtin_prefetch(x + (size_t)m * row + 2 * LANES);
-            __builtin_prefetch(x + (size_t)m * row + 3 * LANES);
+            __builtin_prefetch(x + (size_t)m * apart + 2 * LANES);
+            __builtin_prefetch(x + (size_t)m * apart + 3 * LANES);
         }
         for (int v = 0; v < LANES / VECTOR; v++)
             for (int n = 0; n < g->classes; n++) {
@@ -190,7 +190,7 @@ void REAL_ISA_NAME(rma_receivers)(struct workspace *w, int p, real *cuts)
     const int period = swath->period, wraps = p - swath->wavenumbers / 2;
     const int column = ((rma->spacing < 0 ? -wraps : wraps) % period + period) % period;
     struct group group = {.rma = rma, .swath = swath};
-    group.data = (const real *)swath->data + (size_t)column * (size_t)rma->receivers * 2 * (size_t)swath->row;
+    group.data = (const real *)swath->data + rma_row(swath, 0, column);
     for (int n = 0; n < rma->delay->fold; n++)
         phasor((real)(n * rma->delay->step - floor(n * rma->delay->step + 0.5)), &group.factors[n][0],
                &group.factors[n][1]);
