@@ -4,7 +4,7 @@
 
 #include "range_migration/column.h"
 
-enum { SPAN = RMA_SPAN, EIGHT = 8 };
+enum { SPAN = RMA_SPAN, PIECE = 4 * SPAN /* bins of a polynomial */, EIGHT = 8 };
 typedef real vec8 __attribute__((vector_size(EIGHT * sizeof(real)), aligned(sizeof(real)), may_alias));
 
 /* Bins of K at one wavenumber and patch: K = j step. */
@@ -163,8 +163,7 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
     const int length = w->swath->stolt_length;
     long long first, last;
     const struct bins bins = bins_of(w, patch, &first, &last);
-    struct fit made,
-        *fit = last > first && fit_make(&rma->fit, bin_exact, &bins, (double)first, (double)last, &made) ? &made : NULL;
+    struct fit made, *fit = NULL;
     real *wave = buffer(w, RMA_WAVE), *rows = buffer(w, RMA_TRANSFORMED);
     memset(wave, 0, 2 * (size_t)patch->length * sizeof *wave);
     double position[SPAN], cycles[SPAN], weight[SPAN];
@@ -172,6 +171,11 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
     real re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
     for (long long j0 = first; j0 <= last; j0 += SPAN) {
         const int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
+        if ((j0 - first) % PIECE == 0) {
+            const long long end = last - j0 < PIECE ? last : j0 + PIECE - 1;
+            const bool fits = end > j0 && fit_make(&rma->fit, bin_exact, &bins, (double)j0, (double)end, &made);
+            fit = fits ? &made : NULL;
+        }
         fit_cells(fit, bin_exact, &bins, (double)j0, n, position, cycles, weight);
         places_fill(position, n, rma->taps, &places);
         switch (rma->taps) {
