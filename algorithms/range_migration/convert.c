@@ -7,7 +7,7 @@
 
 #include "range_migration/column.h"
 
-enum { PAIR = 2, SPAN = RMA_SPAN };
+enum { PAIR = 2, SPAN = RMA_SPAN, BLOCKS = 8 /* that are summed together */ };
 
 /* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor the removal of
    whole turns. */
@@ -155,6 +155,153 @@ static void apply_libm(const struct workspace *w, double r, double less, int k, 
         }
 }
 
+/* Phasors of the receivers of a group: each times 1 + `step` is the next one, and 1 + `step` times 1 + `curve` the next
+   1 + `step`. Without their 1 small steps keep their digits: with it float would lose 1e-6 over a group, for each
+   block. */
+enum { FIRST_RE, FIRST_IM, STEP_RE, STEP_IM, CURVE_RE, CURVE_IM, PHASORS };
+
+/* exp(j 2 pi poly(y)) - 1, from half the angle. */
+static void small_rotors(const double *poly, const double *restrict y, int n, real *restrict re, real *restrict im)
+{
+    double half[FIT_DEGREE + 1];
+    for (int power = 0; power <= FIT_DEGREE; power++)
+        half[power] = poly[power] / 2;
+    rotors(half, y, n, re, im);
+#pragma omp simd
+    for (int k = 0; k < n; k++) {
+        const real sine = 2 * im[k];
+        im[k] = sine * re[k];
+        re[k] = -sine * sine / 2;
+    }
+}
+
+static void phasors_fill(const struct rma_ramp *ramp, bool same_curve, const double *y, int n,
+                         real phasors[restrict PHASORS][SPAN])
+{
+    rotors(ramp->first, y, n, phasors[FIRST_RE], phasors[FIRST_IM]);
+    small_rotors(ramp->step, y, n, phasors[STEP_RE], phasors[STEP_IM]);
+    if (!same_curve)
+        small_rotors(ramp->curve, y, n, phasors[CURVE_RE], phasors[CURVE_IM]);
+}
+
+/* A complex vector. */
+struct pair {
+    vec re, im;
+};
+
+static inline __attribute__((always_inline)) struct pair times(struct pair a, struct pair b)
+{
+    return (struct pair){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+static inline __attribute__((always_inline)) struct pair plus_times(struct pair sum, struct pair a, struct pair b)
+{
+    return (struct pair){sum.re + a.re * b.re - a.im * b.im, sum.im + a.re * b.im + a.im * b.re};
+}
+
+/* The group's receivers at n bins, added to the sums of `blocks` neighbouring blocks, a constant where this is inlined:
+   times their corrections for the first one, and times `beyond` for each block after it. */
+static inline __attribute__((always_inline)) void blocks_add(struct rows in, int count, int n, int blocks,
+                                                             real first[restrict PHASORS][SPAN],
+                                                             real beyond[restrict PHASORS][SPAN], struct rows sums)
+{
+    for (int b = 0; b < n; b += VECTOR) {
+        const size_t at = 2 * (size_t)(b / LANES * LANES) + (size_t)(b % LANES);
+        struct pair sum[BLOCKS], turn[2], step[2], curve[2];
+        for (int k = 0; k < 2; k++) {
+            real(*from)[SPAN] = k ? beyond : first;
+            turn[k] = (struct pair){*(vec *)&from[FIRST_RE][b], *(vec *)&from[FIRST_IM][b]};
+            step[k] = (struct pair){*(vec *)&from[STEP_RE][b], *(vec *)&from[STEP_IM][b]};
+            curve[k] = (struct pair){*(vec *)&from[CURVE_RE][b], *(vec *)&from[CURVE_IM][b]};
+        }
+        for (int k = 0; k < blocks; k++) {
+            const real *from = sums.values + (size_t)k * sums.row + at;
+            sum[k] = (struct pair){*(const vec *)from, *(const vec *)(from + LANES)};
+        }
+        const real *x = in.values + at;
+        for (int i = 0; i < count; i++, x += in.row) {
+            struct pair value = times((struct pair){*(const vec *)x, *(const vec *)(x + LANES)}, turn[0]);
+            for (int k = 0; k < blocks; k++) {
+                sum[k] = (struct pair){sum[k].re + value.re, sum[k].im + value.im};
+                value = k + 1 < blocks ? times(value, turn[1]) : value;
+            }
+            for (int k = 0; k < 2; k++) {
+                turn[k] = plus_times(turn[k], turn[k], step[k]);
+                step[k] =
+                    plus_times((struct pair){step[k].re + curve[k].re, step[k].im + curve[k].im}, step[k], curve[k]);
+            }
+        }
+        for (int k = 0; k < blocks; k++) {
+            real *to = sums.values + (size_t)k * sums.row + at;
+            *(vec *)to = sum[k].re;
+            *(vec *)(to + LANES) = sum[k].im;
+        }
+    }
+}
+
+/* All receivers at bins [k, k + n), added up for each of some blocks: 1, 2, 4 or 8. */
+static void add_blocks(const struct workspace *w, const struct rma_ramp *first, const struct rma_ramp *beyond, int k,
+                       int n, int blocks, struct rows in, struct rows sums)
+{
+    const double *y = (const double *)buffer(w, RMA_ABSCISSAS) + k;
+    real phasors[2][PHASORS][SPAN] __attribute__((aligned(RMA_ALIGNMENT)));
+    for (int b = 0; b < blocks; b++)
+        memset(sums.values + (size_t)b * sums.row, 0, 2 * (size_t)n * sizeof *sums.values);
+    for (int g = 0; g < w->rma->groups; g++) {
+        for (int which = 0; which < 2; which++) {
+            const struct rma_ramp *ramp = (which ? beyond : first) + g;
+            phasors_fill(ramp, g > 0 && memcmp(ramp->curve, ramp[-1].curve, sizeof ramp->curve) == 0, y, n,
+                         phasors[which]);
+        }
+        const struct rows from = {in.values + (size_t)first[g].begin * in.row, in.row};
+        switch (blocks) {
+        case 1: blocks_add(from, first[g].count, n, 1, phasors[0], phasors[1], sums); break;
+        case 2: blocks_add(from, first[g].count, n, 2, phasors[0], phasors[1], sums); break;
+        case 4: blocks_add(from, first[g].count, n, 4, phasors[0], phasors[1], sums); break;
+        default: blocks_add(from, first[g].count, n, BLOCKS, phasors[0], phasors[1], sums); break;
+        }
+    }
+}
+
+/* A block's bins times exp(j 2 pi poly(y)). */
+static void turn_block(const struct workspace *w, const double *poly, real *sums)
+{
+    const double *y = buffer(w, RMA_ABSCISSAS);
+    real re[SPAN] __attribute__((aligned(RMA_ALIGNMENT))), im[SPAN] __attribute__((aligned(RMA_ALIGNMENT)));
+    for (int k = w->line.begin / LANES * LANES, n; k < w->swath->row; k += n) {
+        n = w->swath->row - k < SPAN ? w->swath->row - k : SPAN;
+        rotors(poly, y + k, n, re, im);
+        for (int b = 0; b < n; b += VECTOR) {
+            real *at = sums + 2 * (size_t)((k + b) / LANES * LANES) + (size_t)((k + b) % LANES);
+            const struct pair turned =
+                times((struct pair){*(vec *)at, *(vec *)(at + LANES)}, (struct pair){*(vec *)&re[b], *(vec *)&im[b]});
+            *(vec *)at = turned.re;
+            *(vec *)(at + LANES) = turned.im;
+        }
+    }
+}
+
+/* Blocks from `block` on, `count` of them, whose corrections differ by as much from each to the next, `beyond`, but for
+   what all receivers share. */
+static void convert_even(struct workspace *w, const real *data, int block, int count, const struct rma_ramp *beyond,
+                         real *sums)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    const size_t row = 2 * (size_t)swath->row;
+    struct rma_ramp *first = (struct rma_ramp *)buffer(w, RMA_RAMPS) + rma->groups, *own = first + rma->groups;
+    rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[block]), 0, first);
+    for (int k = w->line.begin / LANES * LANES; k < swath->row; k += SPAN)
+        add_blocks(w, first, beyond, k, swath->row - k < SPAN ? swath->row - k : SPAN, count,
+                   (struct rows){(real *)data + 2 * k, swath->apart}, (struct rows){sums + 2 * k, row});
+    for (int n = 1; n < count; n++) {
+        rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[block + n]), 0, own);
+        for (int power = 0; power <= FIT_DEGREE; power++)
+            own->first[power] -= first->first[power] + n * beyond->first[power];
+        turn_block(w, own->first, sums + (size_t)n * row);
+    }
+}
+
 /* Corrections at range r minus those at `less` (0: none is subtracted); `ramps` are their phases. */
 struct correction {
     const struct rma_ramp *ramps;
@@ -193,6 +340,18 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
     for (int k = 0; k < swath->row; k++) {
         double at = y_first + k * y_step;
         y[k] = at < -1 ? -1 : at > 1 ? 1 : at;
+    }
+    if (add && swath->even) {
+        struct rma_ramp *beyond = buffer(w, RMA_RAMPS);
+        rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[1]), rma_block_range(rma, swath->blocks[0]),
+                  beyond);
+        for (int b = 0, count; b < swath->needed; b += count) {
+            for (count = BLOCKS; count > swath->needed - b; count /= 2)
+                ;
+            convert_even(w, data, b, count, beyond, sums + (size_t)b * row);
+        }
+        stage_end(w, RMA_DIFFERENTIAL);
+        return;
     }
     const double centre = rma_block_range(rma, swath->blocks[reference]);
     struct rma_ramp *bulk = buffer(w, RMA_RAMPS), *ramps = bulk + rma->groups;

@@ -3,6 +3,7 @@
 
 #include "range_migration/rma_engine.h"
 
+static const double EVEN = 1e-10;       /* cycles: from block to block */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 
 static double block_place(const struct rma *rma, double r)
@@ -23,10 +24,9 @@ static void blocks_place(struct rma *rma, int count)
         rma->block_width = from; /* of a single row: any value but 0, as places are divided by it */
 }
 
-/* Is the error at the blocks' ends, by conversion at their centres, below the limit (LBF21 Eq. (13))? */
-static bool blocks_suffice(struct rma *rma, int count)
+/* The widest wavenumber of the beam and the sampling, cycles/m. */
+static double widest_wavenumber(const struct rma *rma)
 {
-    blocks_place(rma, count);
     const struct acquisition *a = rma->problem.acquisition;
     double nu = rma->receivers / (2 * fabs(rma->spacing));
     double beta = fabs(rma->setting.speed) / a->sound_speed;
@@ -34,6 +34,15 @@ static bool blocks_suffice(struct rma *rma, int count)
     if (a->tx_length > 0)
         nu = fmin(nu, fmax(1 / a->tx_length,
                            a->echo_tapers ? 0 : 2 * (a->fc + a->bandwidth / 2) / a->sound_speed * a->echo_sine));
+    return nu;
+}
+
+/* Is the error at the blocks' ends, by conversion at their centres, below the limit (LBF21 Eq. (13))? */
+static bool blocks_suffice(struct rma *rma, int count)
+{
+    blocks_place(rma, count);
+    const struct acquisition *a = rma->problem.acquisition;
+    const double nu = widest_wavenumber(rma);
     for (int n = 0; n < count; n++)
         for (int end = -1; end <= 1; end += 2) {
             double edge = rma->block_from + (n + end * 0.5) * rma->block_width;
@@ -112,6 +121,27 @@ static int block_first(const struct rma *rma, double place)
     return (int)fmin(fmax(floor(place) - 1, 0), rma->block_count - rma_nodes_blended(rma));
 }
 
+/* LBF's corrections are linear in 1/r, but for a part that all receivers share. */
+static bool blocks_even(const struct rma *rma, const struct rma_swath *swath)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    const double nu = widest_wavenumber(rma);
+    for (int k = 0; k < 18; k++) { /* 2 receivers, 3 frequencies, 3 wavenumbers */
+        const double frequency = a->fc + (k / 2 % 3 - 1) * a->bandwidth / 2, at = (k / 6 - 1) * nu;
+        double first = 0, each = 0;
+        for (int n = 0; n < swath->needed; n++) {
+            const double r = rma_block_range(rma, swath->blocks[n]);
+            const double own =
+                rma_correction(rma, rma->extremes[k % 2], r, frequency, at) - rma_correction(rma, 0, r, frequency, at);
+            first = n == 0 ? own : first;
+            each = n == 1 ? own - first : each;
+            if (swath->blocks[n] != swath->blocks[0] + n || !(fabs(own - first - n * each) <= EVEN))
+                return false;
+        }
+    }
+    return true;
+}
+
 /* The blocks that make up a swath's rows. */
 void rma_blocks_choose(const struct rma *rma, struct rma_swath *swath, int *list)
 {
@@ -129,4 +159,5 @@ void rma_blocks_choose(const struct rma *rma, struct rma_swath *swath, int *list
             list[swath->needed++] = n;
     }
     swath->reference = swath->needed / 2;
+    swath->even = rma->recurs && swath->needed > 1 && blocks_even(rma, swath);
 }

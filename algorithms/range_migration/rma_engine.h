@@ -21,6 +21,9 @@
                  each receiver's correction at the range of the reference block, whose own sum is then complete
    differential  [M][RMA_SPAN] -> [N][row], or [N][M][row] with sum=after; takes turns with bulk until all bins are done
                  the rest of the correction for each other block, summed over the receivers
+                 where corrections differ by as much from each block to the next but for what all receivers share
+                 (LBF's in 1/r), bulk and differential are one: receivers are turned on from block to block and added
+                 up, and each block is turned by the rest at last
    reconstruct   [N][row] -> [length] samples in range -> [RMA_GUARD + stolt_length + RMA_GUARD] bins
                  an IFFT of `length` for each block; each sample is its block's, or blends the nearest four; samples
                  count from `centre`; zeros up to stolt_length; an FFT, its bins in rising frequency
@@ -188,6 +191,7 @@ struct rma_swath {
 
     int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
     int reference;       /* index into `blocks`: the bulk correction is this block's */
+    bool even;           /* the corrections differ by as much from each block to the next */
 
     void *data; /* [receivers][period][row]: spectra, vectors of re and im in turn (rma_row) */
     /* Reals from a receiver's to the next one's: an odd number of vectors, or receivers a power of two apart would
