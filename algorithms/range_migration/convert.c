@@ -7,7 +7,7 @@
 
 #include "range_migration/column.h"
 
-enum { PAIR = 2, SPAN = RMA_SPAN, BLOCKS = 8 /* that are summed together */ };
+enum { PAIR = 2, SPAN = RMA_SPAN };
 
 /* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor the removal of
    whole turns. */
@@ -207,7 +207,7 @@ static inline __attribute__((always_inline)) void blocks_add(struct rows in, int
 {
     for (int b = 0; b < n; b += VECTOR) {
         const size_t at = 2 * (size_t)(b / LANES * LANES) + (size_t)(b % LANES);
-        struct pair sum[BLOCKS], turn[2], step[2], curve[2];
+        struct pair sum[RMA_BLOCKS], turn[2], step[2], curve[2];
         for (int k = 0; k < 2; k++) {
             real(*from)[SPAN] = k ? beyond : first;
             turn[k] = (struct pair){*(vec *)&from[FIRST_RE][b], *(vec *)&from[FIRST_IM][b]};
@@ -239,7 +239,7 @@ static inline __attribute__((always_inline)) void blocks_add(struct rows in, int
     }
 }
 
-/* All receivers at bins [k, k + n), added up for each of some blocks: 1, 2, 4 or 8. */
+/* All receivers at bins [k, k + n), added up for each of some blocks: 3 to RMA_BLOCKS. */
 static void add_blocks(const struct workspace *w, const struct rma_ramp *first, const struct rma_ramp *beyond, int k,
                        int n, int blocks, struct rows in, struct rows sums)
 {
@@ -255,10 +255,12 @@ static void add_blocks(const struct workspace *w, const struct rma_ramp *first, 
         }
         const struct rows from = {in.values + (size_t)first[g].begin * in.row, in.row};
         switch (blocks) {
-        case 1: blocks_add(from, first[g].count, n, 1, phasors[0], phasors[1], sums); break;
-        case 2: blocks_add(from, first[g].count, n, 2, phasors[0], phasors[1], sums); break;
+        case 3: blocks_add(from, first[g].count, n, 3, phasors[0], phasors[1], sums); break;
         case 4: blocks_add(from, first[g].count, n, 4, phasors[0], phasors[1], sums); break;
-        default: blocks_add(from, first[g].count, n, BLOCKS, phasors[0], phasors[1], sums); break;
+        case 5: blocks_add(from, first[g].count, n, 5, phasors[0], phasors[1], sums); break;
+        case 6: blocks_add(from, first[g].count, n, 6, phasors[0], phasors[1], sums); break;
+        case 7: blocks_add(from, first[g].count, n, 7, phasors[0], phasors[1], sums); break;
+        default: blocks_add(from, first[g].count, n, RMA_BLOCKS, phasors[0], phasors[1], sums); break;
         }
     }
 }
@@ -346,8 +348,7 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
         rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[1]), rma_block_range(rma, swath->blocks[0]),
                   beyond);
         for (int b = 0, count; b < swath->needed; b += count) {
-            for (count = BLOCKS; count > swath->needed - b; count /= 2)
-                ;
+            count = rma_blocks_together(swath->needed - b);
             convert_even(w, data, b, count, beyond, sums + (size_t)b * row);
         }
         stage_end(w, RMA_DIFFERENTIAL);

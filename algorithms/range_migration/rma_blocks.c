@@ -159,5 +159,5 @@ void rma_blocks_choose(const struct rma *rma, struct rma_swath *swath, int *list
             list[swath->needed++] = n;
     }
     swath->reference = swath->needed / 2;
-    swath->even = rma->recurs && swath->needed > 1 && blocks_even(rma, swath);
+    swath->even = rma->recurs && swath->needed > 2 && blocks_even(rma, swath);
 }

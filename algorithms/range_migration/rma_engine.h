@@ -74,6 +74,7 @@ enum {
     RMA_ALIGNMENT = 64,   /* bytes: a vector, and a line of the cache */
     RMA_SPAN = 256,       /* bins that go through all corrections together, in the cache */
     RMA_GROUP = 24,       /* receivers of one recurrence: float loses some 1e-6 over it */
+    RMA_BLOCKS = 8,       /* that share their receivers' phases, at most */
     RMA_TILE = 8,         /* neighbouring wavenumbers whose rows are stored together */
     RMA_CLASSES = 8,      /* of wavenumbers whose receivers are added up together */
     RMA_FOLD = 16,        /* sums of receivers that a class shares, at most */
@@ -191,7 +192,7 @@ struct rma_swath {
 
     int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
     int reference;       /* index into `blocks`: the bulk correction is this block's */
-    bool even;           /* the corrections differ by as much from each block to the next */
+    bool even;           /* three and more, whose corrections differ by as much from each to the next (bulk) */
 
     void *data; /* [receivers][period][row]: spectra, vectors of re and im in turn (rma_row) */
     /* Reals from a receiver's to the next one's: an odd number of vectors, or receivers a power of two apart would
@@ -303,6 +304,13 @@ enum status rma_count(const struct problem *problem, const struct rma_method *me
 enum status rma_blocks_lay(struct rma *rma);
 /* The blocks of a swath's rows, into `list`. */
 void rma_blocks_choose(const struct rma *rma, struct rma_swath *swath, int *list);
+
+/* Of `left` blocks of a swath that is `even`, three and more, those that share their receivers' phases. */
+static inline int rma_blocks_together(int left)
+{
+    const int turns = (left + RMA_BLOCKS - 1) / RMA_BLOCKS;
+    return (left + turns - 1) / turns;
+}
 
 /* Blocks that blend at one range. */
 static inline int rma_nodes_blended(const struct rma *rma)

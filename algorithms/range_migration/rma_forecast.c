@@ -113,6 +113,17 @@ static double share_kept(const struct rma *rma, const struct rma_swath *swath)
     return (double)kept / count;
 }
 
+/* FLOPs of a receiver's bin, 8 for a block's product, with a recurrence for each: so many operations as convert.c
+   has. */
+static double blocks_cost(const struct rma_swath *swath)
+{
+    const double alone = 12, shared = 20, block = 6; /* operations on vectors */
+    double operations = swath->even ? 0 : alone * swath->needed;
+    for (int n = 0; swath->even && n < swath->needed; n += rma_blocks_together(swath->needed - n))
+        operations += shared;
+    return 8 / alone * (operations + (swath->even ? block * swath->needed : 0));
+}
+
 static void swath_cost(const struct rma *rma, const struct rma_swath *swath, double cost[MIGRATIONS])
 {
     const double receivers = rma->receivers, length = swath->length,
@@ -125,7 +136,7 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
         cost[MIGRATION_TERMS] += kept / receivers * swath->held * rma_fold_flops(rma);
     } else {
         cost[MIGRATION_RECORDS] += receivers * rma->pings * fft_flops(length);
-        cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * 8 * swath->needed : 0;
+        cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * blocks_cost(swath) : 0;
         cost[MIGRATION_FOCUS] += kept * swath->needed * sums * length;
     }
     /* FLOPs of a value in a transform: half of a value's time, without a spectrum to split for the interpolation. */

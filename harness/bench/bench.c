@@ -245,8 +245,7 @@ static enum status goal_read(const struct bench *bench, const struct csv *csv, i
     if (!line)
         return cell_refuse(csv, row, OF_LINE, "a line of lines.csv");
     if (!bench_values[value])
-        return cell_refuse(csv, row, VALUE,
-                           "run_s, sum_s, full_s, rate, run_rate, phase_s, after_phases, focused_s, error");
+        return cell_refuse(csv, row, VALUE, "run_s, sum_s, full_s, rate, run_rate, phase_s, focused_s, error");
     const double divisor = goal_over(bench, line, value, over);
     if (divisor == 0)
         return cell_refuse(csv, row, OVER, "a line of lines.csv, peak, fft, fft by one plan, or nothing");

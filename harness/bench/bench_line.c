@@ -218,9 +218,9 @@ enum status bench_lines_measure(const struct scene *scene, struct bench_line *co
 
 /* ---- values ---- */
 
-const char *const bench_values[] = {"run_s",   "sum_s",        "full_s",    "rate",  "run_rate",
-                                    "phase_s", "after_phases", "focused_s", "error", NULL};
-enum value { RUN_S, SUM_S, FULL_S, RATE, RUN_RATE, PHASE_S, AFTER_PHASES, FOCUSED_S, ERROR };
+const char *const bench_values[] = {"run_s",   "sum_s",     "full_s", "rate", "run_rate",
+                                    "phase_s", "focused_s", "error",  NULL};
+enum value { RUN_S, SUM_S, FULL_S, RATE, RUN_RATE, PHASE_S, FOCUSED_S, ERROR };
 enum { FULL_ROWS = 4800 }; /* of BP22's image */
 
 static double stages_s(const struct bench_line *line, const char *const *names)
@@ -234,7 +234,6 @@ static double stages_s(const struct bench_line *line, const char *const *names)
 double bench_value(const struct bench_line *line, int value)
 {
     static const char *const phases[] = {"bulk", "differential", NULL}, *const compression[] = {"compress", NULL};
-    static const char *const later[] = {"reconstruct", "stolt", "focus", "inverse", NULL};
     const double run_s = line->row.run_s, sum_s = measurement_stage(&line->row, "focus");
     switch ((enum value)value) {
     case RUN_S: return run_s;
@@ -243,7 +242,6 @@ double bench_value(const struct bench_line *line, int value)
     case RATE: return line->row.pairs / sum_s;
     case RUN_RATE: return line->row.pairs / run_s;
     case PHASE_S: return stages_s(line, phases);
-    case AFTER_PHASES: return stages_s(line, later) / run_s;
     case FOCUSED_S: return run_s - stages_s(line, compression);
     case ERROR: return line->row.error;
     }

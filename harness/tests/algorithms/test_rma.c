@@ -195,7 +195,7 @@ static void other_ways(void **state)
         {"rma_lbf:blocks=11,variant=printed", "rma_lbf:blocks=11,variant=printed,sum=after,phases=libm", 2e-6},
         {"rma_lbf:blocks=6,spacing=uniform,precision=double",
          "rma_lbf:blocks=6,spacing=uniform,sum=after,precision=double", 1e-14},
-        {"rma_numeric:blocks=2,precision=double", "rma_numeric:blocks=2,sum=after,precision=double", 1e-12},
+        {"rma_numeric:blocks=4,precision=double", "rma_numeric:blocks=4,sum=after,precision=double", 1e-14},
         {"rma_pca:blocks=1,precision=double", "rma_pca:blocks=1,sum=after,precision=double", 1e-14},
     };
     struct scene scene;
