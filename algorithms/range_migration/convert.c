@@ -184,19 +184,20 @@ static void phasors_fill(const struct rma_ramp *ramp, bool same_curve, const dou
         small_rotors(ramp->curve, y, n, phasors[CURVE_RE], phasors[CURVE_IM]);
 }
 
-/* A complex vector. */
-struct pair {
+/* A vector of complex numbers. */
+struct vec_complex {
     vec re, im;
 };
 
-static inline __attribute__((always_inline)) struct pair times(struct pair a, struct pair b)
+static inline __attribute__((always_inline)) struct vec_complex times(struct vec_complex a, struct vec_complex b)
 {
-    return (struct pair){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+    return (struct vec_complex){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-static inline __attribute__((always_inline)) struct pair plus_times(struct pair sum, struct pair a, struct pair b)
+static inline __attribute__((always_inline)) struct vec_complex plus_times(struct vec_complex sum, struct vec_complex a,
+                                                                           struct vec_complex b)
 {
-    return (struct pair){sum.re + a.re * b.re - a.im * b.im, sum.im + a.re * b.im + a.im * b.re};
+    return (struct vec_complex){sum.re + a.re * b.re - a.im * b.im, sum.im + a.re * b.im + a.im * b.re};
 }
 
 /* The group's receivers at n bins, added to the sums of `blocks` neighbouring blocks, a constant where this is inlined:
@@ -207,28 +208,28 @@ static inline __attribute__((always_inline)) void blocks_add(struct rows in, int
 {
     for (int b = 0; b < n; b += VECTOR) {
         const size_t at = 2 * (size_t)(b / LANES * LANES) + (size_t)(b % LANES);
-        struct pair sum[RMA_BLOCKS], turn[2], step[2], curve[2];
+        struct vec_complex sum[RMA_BLOCKS], turn[2], step[2], curve[2];
         for (int k = 0; k < 2; k++) {
             real(*from)[SPAN] = k ? beyond : first;
-            turn[k] = (struct pair){*(vec *)&from[FIRST_RE][b], *(vec *)&from[FIRST_IM][b]};
-            step[k] = (struct pair){*(vec *)&from[STEP_RE][b], *(vec *)&from[STEP_IM][b]};
-            curve[k] = (struct pair){*(vec *)&from[CURVE_RE][b], *(vec *)&from[CURVE_IM][b]};
+            turn[k] = (struct vec_complex){*(vec *)&from[FIRST_RE][b], *(vec *)&from[FIRST_IM][b]};
+            step[k] = (struct vec_complex){*(vec *)&from[STEP_RE][b], *(vec *)&from[STEP_IM][b]};
+            curve[k] = (struct vec_complex){*(vec *)&from[CURVE_RE][b], *(vec *)&from[CURVE_IM][b]};
         }
         for (int k = 0; k < blocks; k++) {
             const real *from = sums.values + (size_t)k * sums.row + at;
-            sum[k] = (struct pair){*(const vec *)from, *(const vec *)(from + LANES)};
+            sum[k] = (struct vec_complex){*(const vec *)from, *(const vec *)(from + LANES)};
         }
         const real *x = in.values + at;
         for (int i = 0; i < count; i++, x += in.row) {
-            struct pair value = times((struct pair){*(const vec *)x, *(const vec *)(x + LANES)}, turn[0]);
+            struct vec_complex value = times((struct vec_complex){*(const vec *)x, *(const vec *)(x + LANES)}, turn[0]);
             for (int k = 0; k < blocks; k++) {
-                sum[k] = (struct pair){sum[k].re + value.re, sum[k].im + value.im};
+                sum[k] = (struct vec_complex){sum[k].re + value.re, sum[k].im + value.im};
                 value = k + 1 < blocks ? times(value, turn[1]) : value;
             }
             for (int k = 0; k < 2; k++) {
                 turn[k] = plus_times(turn[k], turn[k], step[k]);
-                step[k] =
-                    plus_times((struct pair){step[k].re + curve[k].re, step[k].im + curve[k].im}, step[k], curve[k]);
+                step[k] = plus_times((struct vec_complex){step[k].re + curve[k].re, step[k].im + curve[k].im}, step[k],
+                                     curve[k]);
             }
         }
         for (int k = 0; k < blocks; k++) {
@@ -275,8 +276,8 @@ static void turn_block(const struct workspace *w, const double *poly, real *sums
         rotors(poly, y + k, n, re, im);
         for (int b = 0; b < n; b += VECTOR) {
             real *at = sums + 2 * (size_t)((k + b) / LANES * LANES) + (size_t)((k + b) % LANES);
-            const struct pair turned =
-                times((struct pair){*(vec *)at, *(vec *)(at + LANES)}, (struct pair){*(vec *)&re[b], *(vec *)&im[b]});
+            const struct vec_complex turned = times((struct vec_complex){*(vec *)at, *(vec *)(at + LANES)},
+                                                    (struct vec_complex){*(vec *)&re[b], *(vec *)&im[b]});
             *(vec *)at = turned.re;
             *(vec *)(at + LANES) = turned.im;
         }

@@ -282,23 +282,22 @@ static void spread(const struct rma *rma, const struct rma_swath *swath, int rec
    pings, and the tables of its map for all of them. */
 static void receive(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[RMA_SPREADS])
 {
-    double sums[RMA_SPREADS] = {0};
-#pragma omp parallel num_threads(rma->threads) reduction(+ : sums[:RMA_SPREADS])
+    memset(seconds, 0, RMA_SPREADS * sizeof *seconds);
+#pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_SPREADS])
     for (int first = 0, end; first < rma->receivers; first = end) {
         end = rma->receivers - first < rma->threads ? rma->receivers : first + rma->threads;
 #pragma omp for schedule(static) collapse(2)
         for (int m = first; m < end; m++)
             for (int k = 0; k < rma->pings; k++)
-                compress(rma, map, samples, m, k, sums);
+                compress(rma, map, samples, m, k, seconds);
         for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
             const int strips = (s->row / LANES + BLOCKS - 1) / BLOCKS;
 #pragma omp for schedule(static) collapse(2)
             for (int m = first; m < end; m++)
                 for (int strip = 0; strip < strips; strip++)
-                    spread(rma, s, m, strip, sums);
+                    spread(rma, s, m, strip, seconds);
         }
     }
-    memcpy(seconds, sums, sizeof sums);
 }
 
 static void inverse(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels)
