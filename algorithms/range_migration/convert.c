@@ -200,31 +200,57 @@ static inline __attribute__((always_inline)) struct vec_complex plus_times(struc
     return (struct vec_complex){sum.re + a.re * b.re - a.im * b.im, sum.im + a.re * b.im + a.im * b.re};
 }
 
+static inline __attribute__((always_inline)) void add_to(real *at, vec re, vec im)
+{
+    *(vec *)at += re;
+    *(vec *)(at + LANES) += im;
+}
+
 /* The group's receivers at n bins, added to the sums of `blocks` neighbouring blocks, a constant where this is inlined:
-   times their corrections for the first one, and times `beyond` for each block after it. */
+   times their corrections amid the blocks, and from there by the angle `beyond` for each block, to both sides. Blocks
+   on both sides share a receiver's products with the angle's cosine and sine, of twice, three times ... the angle by
+   Chebyshev's recurrence. Of an even number of blocks `beyond` is half the angle. */
 static inline __attribute__((always_inline)) void blocks_add(struct rows in, int count, int n, int blocks,
-                                                             real first[restrict PHASORS][SPAN],
+                                                             real amid[restrict PHASORS][SPAN],
                                                              real beyond[restrict PHASORS][SPAN], struct rows sums)
 {
+    const vec zero = {0};
+    const int sides = blocks / 2;
+    const bool odd = blocks % 2 != 0;
     for (int b = 0; b < n; b += VECTOR) {
         const size_t at = 2 * (size_t)(b / LANES * LANES) + (size_t)(b % LANES);
-        struct vec_complex sum[RMA_BLOCKS], turn[2], step[2], curve[2];
+        struct vec_complex middle = {zero, zero}, by_cosine[RMA_BLOCKS / 2], by_sine[RMA_BLOCKS / 2], turn[2], step[2],
+                           curve[2];
         for (int k = 0; k < 2; k++) {
-            real(*from)[SPAN] = k ? beyond : first;
+            real(*from)[SPAN] = k ? beyond : amid;
             turn[k] = (struct vec_complex){*(vec *)&from[FIRST_RE][b], *(vec *)&from[FIRST_IM][b]};
             step[k] = (struct vec_complex){*(vec *)&from[STEP_RE][b], *(vec *)&from[STEP_IM][b]};
             curve[k] = (struct vec_complex){*(vec *)&from[CURVE_RE][b], *(vec *)&from[CURVE_IM][b]};
         }
-        for (int k = 0; k < blocks; k++) {
-            const real *from = sums.values + (size_t)k * sums.row + at;
-            sum[k] = (struct vec_complex){*(const vec *)from, *(const vec *)(from + LANES)};
-        }
+        for (int k = 0; k < sides; k++)
+            by_cosine[k] = by_sine[k] = middle;
         const real *x = in.values + at;
         for (int i = 0; i < count; i++, x += in.row) {
-            struct vec_complex value = times((struct vec_complex){*(const vec *)x, *(const vec *)(x + LANES)}, turn[0]);
-            for (int k = 0; k < blocks; k++) {
-                sum[k] = (struct vec_complex){sum[k].re + value.re, sum[k].im + value.im};
-                value = k + 1 < blocks ? times(value, turn[1]) : value;
+            const struct vec_complex value =
+                times((struct vec_complex){*(const vec *)x, *(const vec *)(x + LANES)}, turn[0]);
+            const vec twice = odd ? 2 * turn[1].re : 2 - 4 * turn[1].im * turn[1].im; /* the whole angle's cosine */
+            vec cosine = turn[1].re, sine = turn[1].im;
+            vec cosine_before = cosine, sine_before = -sine;
+            if (odd) {
+                middle = (struct vec_complex){middle.re + value.re, middle.im + value.im};
+                cosine_before = zero + 1;
+                sine_before = zero;
+            }
+            for (int k = 0; k < sides; k++) {
+                by_cosine[k].re += value.re * cosine;
+                by_cosine[k].im += value.im * cosine;
+                by_sine[k].re += value.re * sine;
+                by_sine[k].im += value.im * sine;
+                const vec next[2] = {twice * cosine - cosine_before, twice * sine - sine_before};
+                cosine_before = cosine;
+                sine_before = sine;
+                cosine = next[0];
+                sine = next[1];
             }
             for (int k = 0; k < 2; k++) {
                 turn[k] = plus_times(turn[k], turn[k], step[k]);
@@ -232,16 +258,19 @@ static inline __attribute__((always_inline)) void blocks_add(struct rows in, int
                                      curve[k]);
             }
         }
-        for (int k = 0; k < blocks; k++) {
-            real *to = sums.values + (size_t)k * sums.row + at;
-            *(vec *)to = sum[k].re;
-            *(vec *)(to + LANES) = sum[k].im;
+        if (odd)
+            add_to(sums.values + (size_t)sides * sums.row + at, middle.re, middle.im);
+        for (int k = 0; k < sides; k++) {
+            real *below = sums.values + (size_t)(sides - 1 - k) * sums.row + at,
+                 *above = sums.values + (size_t)(sides + odd + k) * sums.row + at;
+            add_to(below, by_cosine[k].re + by_sine[k].im, by_cosine[k].im - by_sine[k].re);
+            add_to(above, by_cosine[k].re - by_sine[k].im, by_cosine[k].im + by_sine[k].re);
         }
     }
 }
 
 /* All receivers at bins [k, k + n), added up for each of some blocks: 3 to RMA_BLOCKS. */
-static void add_blocks(const struct workspace *w, const struct rma_ramp *first, const struct rma_ramp *beyond, int k,
+static void add_blocks(const struct workspace *w, const struct rma_ramp *amid, const struct rma_ramp *beyond, int k,
                        int n, int blocks, struct rows in, struct rows sums)
 {
     const double *y = (const double *)buffer(w, RMA_ABSCISSAS) + k;
@@ -250,18 +279,18 @@ static void add_blocks(const struct workspace *w, const struct rma_ramp *first, 
         memset(sums.values + (size_t)b * sums.row, 0, 2 * (size_t)n * sizeof *sums.values);
     for (int g = 0; g < w->rma->groups; g++) {
         for (int which = 0; which < 2; which++) {
-            const struct rma_ramp *ramp = (which ? beyond : first) + g;
+            const struct rma_ramp *ramp = (which ? beyond : amid) + g;
             phasors_fill(ramp, g > 0 && memcmp(ramp->curve, ramp[-1].curve, sizeof ramp->curve) == 0, y, n,
                          phasors[which]);
         }
-        const struct rows from = {in.values + (size_t)first[g].begin * in.row, in.row};
+        const struct rows from = {in.values + (size_t)amid[g].begin * in.row, in.row};
         switch (blocks) {
-        case 3: blocks_add(from, first[g].count, n, 3, phasors[0], phasors[1], sums); break;
-        case 4: blocks_add(from, first[g].count, n, 4, phasors[0], phasors[1], sums); break;
-        case 5: blocks_add(from, first[g].count, n, 5, phasors[0], phasors[1], sums); break;
-        case 6: blocks_add(from, first[g].count, n, 6, phasors[0], phasors[1], sums); break;
-        case 7: blocks_add(from, first[g].count, n, 7, phasors[0], phasors[1], sums); break;
-        default: blocks_add(from, first[g].count, n, RMA_BLOCKS, phasors[0], phasors[1], sums); break;
+        case 3: blocks_add(from, amid[g].count, n, 3, phasors[0], phasors[1], sums); break;
+        case 4: blocks_add(from, amid[g].count, n, 4, phasors[0], phasors[1], sums); break;
+        case 5: blocks_add(from, amid[g].count, n, 5, phasors[0], phasors[1], sums); break;
+        case 6: blocks_add(from, amid[g].count, n, 6, phasors[0], phasors[1], sums); break;
+        case 7: blocks_add(from, amid[g].count, n, 7, phasors[0], phasors[1], sums); break;
+        default: blocks_add(from, amid[g].count, n, RMA_BLOCKS, phasors[0], phasors[1], sums); break;
         }
     }
 }
@@ -284,6 +313,15 @@ static void turn_block(const struct workspace *w, const double *poly, real *sums
     }
 }
 
+static void ramp_add(struct rma_ramp *to, const struct rma_ramp *ramp, double factor)
+{
+    for (int power = 0; power <= FIT_DEGREE; power++) {
+        to->first[power] += factor * ramp->first[power];
+        to->step[power] += factor * ramp->step[power];
+        to->curve[power] += factor * ramp->curve[power];
+    }
+}
+
 /* Blocks from `block` on, `count` of them, whose corrections differ by as much from each to the next, `beyond`, but for
    what all receivers share. */
 static void convert_even(struct workspace *w, const real *data, int block, int count, const struct rma_ramp *beyond,
@@ -292,16 +330,23 @@ static void convert_even(struct workspace *w, const real *data, int block, int c
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
     const size_t row = 2 * (size_t)swath->row;
-    struct rma_ramp *first = (struct rma_ramp *)buffer(w, RMA_RAMPS) + rma->groups, *own = first + rma->groups;
-    rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[block]), 0, first);
+    struct rma_ramp *amid = (struct rma_ramp *)buffer(w, RMA_RAMPS) + rma->groups, *side = amid + rma->groups;
+    rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[block]), 0, amid);
+    double first[FIT_DEGREE + 1], own[FIT_DEGREE + 1];
+    memcpy(first, amid->first, sizeof first);
+    memset(side, 0, (size_t)rma->groups * sizeof *side);
+    for (int g = 0; g < rma->groups; g++) {
+        ramp_add(&amid[g], &beyond[g], 0.5 * (count - 1));
+        ramp_add(&side[g], &beyond[g], count % 2 ? 1 : 0.5);
+    }
     for (int k = w->line.begin / LANES * LANES; k < swath->row; k += SPAN)
-        add_blocks(w, first, beyond, k, swath->row - k < SPAN ? swath->row - k : SPAN, count,
+        add_blocks(w, amid, side, k, swath->row - k < SPAN ? swath->row - k : SPAN, count,
                    (struct rows){(real *)data + 2 * k, swath->apart}, (struct rows){sums + 2 * k, row});
     for (int n = 1; n < count; n++) {
-        rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[block + n]), 0, own);
+        rma_polynomial(rma, &w->line, 0, rma_block_range(rma, swath->blocks[block + n]), own);
         for (int power = 0; power <= FIT_DEGREE; power++)
-            own->first[power] -= first->first[power] + n * beyond->first[power];
-        turn_block(w, own->first, sums + (size_t)n * row);
+            own[power] -= first[power] + n * beyond->first[power];
+        turn_block(w, own, sums + (size_t)n * row);
     }
 }
 

@@ -351,6 +351,8 @@ double rma_offset(const struct rma *rma, double nu);
 /* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi, less what rows are turned by. */
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu);
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q);
+/* Fit the correction of a receiver at range r: a polynomial [FIT_DEGREE + 1] in y of struct rma_ramp. */
+void rma_polynomial(const struct rma *rma, const struct rma_line *line, int receiver, double r, double *polynomial);
 /* Fit the correction at `r` minus the one at `less` (0: none is subtracted) for all groups. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
 /* Range of a block's centre, m. */

@@ -57,6 +57,23 @@ double rma_block_range(const struct rma *rma, int block)
     return rma->options.spacing == RMA_INVERSE ? 1 / centre : centre;
 }
 
+static void powers_fill(const struct rma *rma, const double *values, double *polynomial)
+{
+    for (int power = 0; power <= FIT_DEGREE; power++) {
+        polynomial[power] = 0;
+        for (int n = 0; n <= FIT_DEGREE; n++)
+            polynomial[power] += rma->fit.powers[power][n] * values[n];
+    }
+}
+
+void rma_polynomial(const struct rma *rma, const struct rma_line *line, int receiver, double r, double *polynomial)
+{
+    double values[FIT_DEGREE + 1];
+    for (int n = 0; n <= FIT_DEGREE; n++)
+        values[n] = rma_correction(rma, receiver, r, line->middle + line->half * rma->fit.nodes[n], line->nu);
+    powers_fill(rma, values, polynomial);
+}
+
 /* The quadratic through the first, the middle and the last receiver of a group, at each node in frequency. The
    formulas of LBF and PCA are quadratic in d; the exact one differs by less than 1e-6 rad over a group. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps)
@@ -83,12 +100,9 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
         ramps->begin = begin;
         ramps->count = count;
         for (int k = 0; k < 3; k++)
-            for (int power = 0; power <= FIT_DEGREE; power++) {
-                polynomials[k][power] = 0;
-                for (int n = 0; n <= FIT_DEGREE; n++)
-                    polynomials[k][power] += rma->fit.powers[power][n] * values[k][n];
-                same = same && (k < 2 || fabs(ramps->curve[power] - ramps[-1].curve[power]) < SAME_CURVE);
-            }
+            powers_fill(rma, values[k], polynomials[k]);
+        for (int power = 0; power <= FIT_DEGREE; power++)
+            same = same && fabs(ramps->curve[power] - ramps[-1].curve[power]) < SAME_CURVE;
         if (same || count < 3) /* one or two receivers have no curvature of their own */
             memcpy(ramps->curve, begin > 0 ? ramps[-1].curve : ramps->curve, sizeof ramps->curve);
     }
