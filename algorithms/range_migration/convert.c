@@ -324,28 +324,30 @@ static void ramp_add(struct rma_ramp *to, const struct rma_ramp *ramp, double fa
 
 /* Blocks from `block` on, `count` of them, whose corrections differ by as much from each to the next, `beyond`, but for
    what all receivers share. */
-static void convert_even(struct workspace *w, const real *data, int block, int count, const struct rma_ramp *beyond,
-                         real *sums)
+static void convert_even(struct workspace *w, const real *data, int block, int count, real *sums)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
     const size_t row = 2 * (size_t)swath->row;
-    struct rma_ramp *amid = (struct rma_ramp *)buffer(w, RMA_RAMPS) + rma->groups, *side = amid + rma->groups;
+    struct rma_ramp *amid = buffer(w, RMA_RAMPS), *beyond = amid + rma->groups;
+    double first[FIT_DEGREE + 1], each[FIT_DEGREE + 1], own[FIT_DEGREE + 1];
     rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[block]), 0, amid);
-    double first[FIT_DEGREE + 1], own[FIT_DEGREE + 1];
+    rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[block + 1]), 0, beyond);
     memcpy(first, amid->first, sizeof first);
-    memset(side, 0, (size_t)rma->groups * sizeof *side);
     for (int g = 0; g < rma->groups; g++) {
+        ramp_add(&beyond[g], &amid[g], -1);
         ramp_add(&amid[g], &beyond[g], 0.5 * (count - 1));
-        ramp_add(&side[g], &beyond[g], count % 2 ? 1 : 0.5);
     }
+    memcpy(each, beyond->first, sizeof each);
+    for (int g = 0; g < rma->groups && count % 2 == 0; g++)
+        ramp_add(&beyond[g], &beyond[g], -0.5);
     for (int k = w->line.begin / LANES * LANES; k < swath->row; k += SPAN)
-        add_blocks(w, amid, side, k, swath->row - k < SPAN ? swath->row - k : SPAN, count,
+        add_blocks(w, amid, beyond, k, swath->row - k < SPAN ? swath->row - k : SPAN, count,
                    (struct rows){(real *)data + 2 * k, swath->apart}, (struct rows){sums + 2 * k, row});
-    for (int n = 1; n < count; n++) {
+    for (int n = 2; n < count; n++) {
         rma_polynomial(rma, &w->line, 0, rma_block_range(rma, swath->blocks[block + n]), own);
         for (int power = 0; power <= FIT_DEGREE; power++)
-            own[power] -= first[power] + n * beyond->first[power];
+            own[power] -= first[power] + n * each[power];
         turn_block(w, own, sums + (size_t)n * row);
     }
 }
@@ -390,12 +392,9 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
         y[k] = at < -1 ? -1 : at > 1 ? 1 : at;
     }
     if (add && swath->even) {
-        struct rma_ramp *beyond = buffer(w, RMA_RAMPS);
-        rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[1]), rma_block_range(rma, swath->blocks[0]),
-                  beyond);
         for (int b = 0, count; b < swath->needed; b += count) {
             count = rma_blocks_together(swath->needed - b);
-            convert_even(w, data, b, count, beyond, sums + (size_t)b * row);
+            convert_even(w, data, b, count, sums + (size_t)b * row);
         }
         stage_end(w, RMA_DIFFERENTIAL);
         return;

@@ -60,19 +60,20 @@ double delay_terms_wavenumber(const struct delay_terms *terms, const struct spec
 double complex delay_terms_value(const struct delay_terms *terms, int angle, int q, double r);
 
 /* Taps of least squares over the compressed pulse's energy spectrum, by the fraction of a sample: tap k weights sample
-   k + 1 - taps/2. */
+   k + 1 - taps/2. The samples come at `share` of the echoes' sampling rate. */
 struct delay_taps {
     int taps;
     double weights[DELAY_INTERVALS + 1][DELAY_TAPS], slopes[DELAY_INTERVALS + 1][DELAY_TAPS];
 };
 
 /* STATUS_FAILED without memory. */
-enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made);
-/* The taps' error, relative L2 of the pulse, half-way between two samples; NAN without memory. */
-double delay_taps_error(const struct acquisition *acquisition, int taps);
-/* The taps' error in an image, relative L2, for its receivers' delays and frequencies up to `half` cycles a sample; it
+enum status delay_taps_make(const struct acquisition *acquisition, double share, int taps, struct delay_taps *made);
+/* The taps' error half-way between two samples, relative L2 of the pulse, at frequencies up to `half` of the echoes'
+   sampling rate; NAN without memory. */
+double delay_taps_error(const struct acquisition *acquisition, double share, int taps, double half);
+/* The taps' error in an image, relative L2, for its receivers' delays and these frequencies; it
    grows as sin(pi fraction). NAN without memory. */
-double delay_taps_expected(const struct rma_view *view, int taps, double half);
+double delay_taps_expected(const struct rma_view *view, double share, int taps, double half);
 /* Weights for the signal `fraction` samples (0 to 1) after tap taps/2 - 1, and their slopes over it. */
 void delay_taps_weights(const struct delay_taps *taps, double fraction, double *weights, double *slopes);
 

@@ -88,7 +88,7 @@ static void count_published(struct rma *rma)
 {
     const struct rma_method *method = &rma->method;
     struct work *work = &rma->work;
-    double receivers = rma->receivers, na = (double)rma->pings * receivers, nr = rma->samples;
+    double receivers = rma->receivers, na = (double)rma->pings * receivers, nr = rma->problem.acquisition->samples;
     double taps = rma->taps, range = method->range[0] * receivers + method->range[1];
     double azimuth = method->azimuth[0] * receivers + method->azimuth[1];
     double products = method->products[0] * receivers + method->products[1];
@@ -112,8 +112,8 @@ static enum status count_work(struct rma *rma)
     if (!used)
         return status_set(STATUS_FAILED, "%s: no memory for %d blocks", rma->method.name, rma->block_count);
     if (rma->record_length > 0)
-        work->flops =
-            (double)rma->receivers * rma->pings * (2 * fft_flops(rma->record_length) + 6 * rma->record_length);
+        work->flops = (double)rma->receivers * rma->pings
+                      * (fft_flops(rma->record_length) + fft_flops(rma->inverse_length) + 6.0 * rma->inverse_length);
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         work->flops += swath_flops(rma, s);
         taken += s->end - s->begin;
@@ -142,6 +142,9 @@ static enum status count_work(struct rma *rma)
         {rma->converts && !rma->delay && !differential, "; differential preprocessing: one block", {0}},
         {needed < rma->block_count, "; %.0f blocks without rows", {rma->block_count - needed, 0}},
         {taken < rma->samples, "; %.0f %% of each record", {100 * (1 - taken / rma->samples)}},
+        {rma->rate_up < rma->rate_down,
+         "; %.0f %% of the sampling rate",
+         {100 * (1 - (double)rma->rate_up / rma->rate_down)}},
         {bins < all && !rma->delay,
          "; %.0f %% of the band: %.1g of the pulse's energy",
          {100 * (1 - bins / all), rma->loss}},
@@ -166,7 +169,8 @@ static enum status check_work(const struct rma *rma)
         bytes += 2 * real_bytes * ((double)s->period * rma->receivers * s->row + (double)s->rows * (double)s->columns);
     for (int k = 0; k < rma->patch_count; k++)
         pixels += (double)rma->patches[k].grid.r_count * rma->patches[k].grid.x_count;
-    double given = 2 * real_bytes * (records * rma->samples + pixels), direct = 16 * records * pixels;
+    double given = 2 * real_bytes * (records * rma->problem.acquisition->samples + pixels),
+           direct = 16 * records * pixels;
     if (!(rma->work.flops <= fmax(WORK_LIMIT, much * direct)))
         return status_set(STATUS_UNSUPPORTED,
                           "%s: condition work: %.2g operations, %.2g times those of back projection; at "

@@ -251,7 +251,7 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
 /* Further conditions of delay compensation (delay_compensation.h). */
 static int delay_conditions(const struct rma_view *view, struct condition *list, int count)
 {
-    const double error = view->converts ? delay_taps_error(view->problem->acquisition, view->method->taps) : 0;
+    const double error = view->converts ? delay_taps_error(view->problem->acquisition, 1, view->method->taps, 0.5) : 0;
     list[count++] = condition_most(SEVERITY_REFUSE, "delay_terms", delay_terms_left(view, view->method->terms),
                                    TERMS_LIMIT, "the phase error that the terms over the receivers leave (relative L2)",
                                    "more terms, rows farther away, a shorter array or a narrower beam");

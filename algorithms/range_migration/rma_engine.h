@@ -1,15 +1,16 @@
-/* A range migration's plan. rma_layout.c lays it out (track, swaths and their transforms), rma_blocks.c the blocks of
-   the conversion, rma_phase.c has the corrections' phases, rma_transform.c transforms along range and azimuth (for each
-   precision), convert.c and focus.c work on one azimuth wavenumber (for each precision and instruction set), rma.c puts
-   them in order. Pointers without a type hold values of the plan's precision.
+/* A range migration's plan. rma_layout.c lays it out (track, swaths and their transforms), rma_records.c the records,
+   rma_blocks.c the blocks of the conversion, rma_phase.c has the corrections' phases, rma_transform.c transforms along
+   range and azimuth (for each precision), convert.c and focus.c work on one azimuth wavenumber (for each precision and
+   instruction set), rma.c puts them in order. Pointers without a type hold values of the plan's precision.
 
    THE STAGES, with the shape of the array before and after each (rma.h has the equations). All values are complex, the
    last dimension is contiguous. M receivers; P = period, the pings and zeros after them; Q = M P wavenumbers; `row`
    bins contain the band of a swath and fill whole vectors; N = needed, the blocks that a swath's rows use.
 
    compress      [pings][M][samples] -> [M][pings][row] for each swath, in swath->data
-                 each record through the matched filter, by transforms of record_length (unless the echoes come
-                 compressed); its stretch for the swath, ends tapered, through an FFT of `length`; the band is kept
+                 each record through the matched filter, by a transform of record_length and one back of
+                 inverse_length, to the rate that the band needs (unless the echoes come compressed); its stretch for
+                 the swath, ends tapered, through an FFT of `length`; the band is kept
    spread        [M][pings][row] -> [M][P][row], in place
                  an FFT over the pings for each receiver and bin; from here on re and im take turns by vectors
 
@@ -81,6 +82,7 @@ enum {
     RMA_NODES = 4,        /* blocks that blend at one range: a cubic */
     RMA_GUARD = 16,       /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024, /* of the Stolt kernel's table, linear inside each */
+    RMA_RATES = 16,       /* parts of the echoes' sampling rate, of which compressed records need some */
     RMA_RUN = 16,         /* samples of a record that share the taps of their delay */
     CHIRP_ROWS = 16,      /* that are turned one by one from an exact phase */
     CHIRP_TERMS = 12      /* of a chirp transform, at most: more cost float its digits */
@@ -100,7 +102,7 @@ enum rma_buffer {
     RMA_SPECTRUM,    /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
     RMA_STORED,      /* complex [RMA_TILE][rows + RMA_TILE] */
     RMA_RECORD,      /* complex [record_length] */
-    RMA_PADDED,      /* complex [held + 2 map guards]: delay compensation's */
+    RMA_PADDED,      /* complex [inverse_length, or held, + 2 map guards]: delay compensation's records */
     RMA_TURNS,       /* real [RMA_CLASSES][receivers][2]: phasors of the receivers' offsets */
     RMA_EDGES,       /* complex [receivers][terms][row/LANES + 1]: U at the edges of vectors */
     RMA_MEMBERS,     /* struct rma_member [receivers] */
@@ -228,8 +230,8 @@ struct rma {
     struct work work;
 
     /* track: ping k is emitted at x_first + k spacing, receiver m is offset[m] ahead */
-    double x_first, spacing, t0, fs;
-    int receivers, pings, samples;
+    double x_first, spacing, t0;
+    int receivers, pings;
     double *offset;           /* [receivers] m */
     int extremes[2];          /* the receivers of least and greatest offset */
     double nearest, farthest; /* m: of all wanted rows */
@@ -238,15 +240,21 @@ struct rma {
     bool recurs;   /* by recurrence: receivers are evenly spaced, and phases=libm is not set */
     bool converts; /* false: one receiver, at the transmitter */
 
-    /* pulse compression */
-    int from, held;    /* the compressed samples that swaths use: [from, from + held) of a record */
-    int read;          /* the samples [from, from + read) that these take: as many, and a pulse's length if raw */
-    int record_length; /* of its transform; 0: the echoes come compressed */
-    double half_band;  /* Hz: half of the compressed pulse's band */
-    double loss;       /* energy of the compressed pulse outside it, relative */
-    int taper;         /* samples over which a cut tapers, and as many between the taper and the rows */
-    void *filter;      /* complex [record_length]: conj(replica)/energy */
-    void *tapers;      /* real [taper], rising */
+    /* pulse compression, to rate_up/rate_down of the echoes' sampling rate: `fs`, `samples` and all samples count at
+       that rate, but for `read` */
+    double fs;   /* Hz */
+    int samples; /* of a record, `early` of them before the echoes' first */
+    int early, rate_up, rate_down;
+    int from, held;      /* the compressed samples that swaths use: [from, from + held) of a record */
+    int read_from, read; /* the echoes' samples that these take: [read_from, read_from + read) */
+    int ahead;           /* samples of [from, from + held) before the echo's sample read_from */
+    int record_length;   /* of its transform; 0: the echoes come compressed */
+    int inverse_length;  /* of the transform back: record_length rate_up/rate_down */
+    double half_band;    /* Hz: half of the compressed pulse's band */
+    double loss;         /* energy of the compressed pulse outside it, relative */
+    int taper;           /* samples over which a cut tapers, and as many between the taper and the rows */
+    void *filter;        /* complex [inverse_length]: conj(replica)/energy */
+    void *tapers;        /* real [taper], rising */
     void *record_forward, *record_inverse;
 
     /* blocks: centre n of block_count at `block_from + n block_width` in r or 1/r */
@@ -284,13 +292,24 @@ struct rma {
 enum status rma_layout(struct rma *rma);
 /* The tables of delay compensation. */
 enum status rma_delay_tables(struct rma *rma);
-/* Samples over which a cut of the records tapers. */
-int rma_taper(const struct acquisition *acquisition);
-
 static inline double rma_last_row(const struct grid *grid)
 {
     return grid->r_first + (grid->r_count - 1) * grid->r_step;
 }
+
+/* ---- rma_records.c ---- */
+
+/* The bins of the compressed pulse, or, of echoes that come compressed, of twice the band; the rate of the records.
+   Errors: STATUS_FAILED without memory. */
+enum status rma_band_lay(struct rma *rma);
+/* The samples of a record that the swaths use. Only these are compressed: a stretch's correlation is exact, but for
+   what lies beyond the band of a lower rate. */
+enum status rma_records_lay(struct rma *rma);
+/* Samples, at the echoes' sampling rate, over which a cut of the records tapers. */
+int rma_taper(const struct acquisition *acquisition);
+/* The share of their sampling rate at which raw echoes are compressed, in RMA_RATES parts: for the compressed pulse's
+   band, |f| <= half_hz, and the taps of the receivers' delays. */
+double rma_share(const struct acquisition *acquisition, const struct rma_method *method, double half_hz);
 
 /* ---- rma.c ---- */
 /* A plan of counted work, without memory for echoes or transforms; rma_destroy releases it. Errors: as rma_layout, and

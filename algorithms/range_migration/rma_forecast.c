@@ -25,8 +25,9 @@ static const double ROUNDING[] = {1e-6, 1e-13};
 
 /* The part of the band that range migration keeps. */
 struct band {
-    double half; /* cycles a sample */
-    double lost; /* energy, relative: beyond it, or at half the sampling rate */
+    double half;  /* cycles a sample */
+    double lost;  /* energy, relative: beyond it, or at half the sampling rate */
+    double share; /* of the sampling rate: of the compressed records */
 };
 
 /* Energy density at half the sampling rate over that of the band, by the records' ends: a cut D samples beside an echo
@@ -61,10 +62,12 @@ static enum status raw_band(const struct rma_view *view, double edge, struct ban
         nearest = fmin(nearest, problem->patches[k].r_first);
     if (status == STATUS_OK) {
         band->half = found.half_hz / a->fs;
+        band->share = rma_share(a, view->method, found.half_hz);
         if (view->period == 0 && (2 * nearest / a->sound_speed - a->t0[0]) * a->fs > fmax(2 * taper, pulse))
             band->half += 2 / taper;
         if (view->method->terms > 0)
             band->half += RMA_GUARD / (a->samples + 2 * pulse);
+        band->half = fmin(band->half, band->share / 2);
         for (int k = 0; k < length; k++) {
             energy[k] *= image_gain(a, cells, pulse_bin_frequency(a, k, length));
             total += energy[k];
@@ -82,7 +85,7 @@ static enum status band_of(const struct rma_view *view, double edge, struct band
     const struct acquisition *a = view->problem->acquisition;
     const double cut = density_of_ends(view->problem);
     double density = cut;
-    *band = (struct band){fmin(fmax(a->bandwidth / a->fs, 32.0 / a->samples), 0.5), 0};
+    *band = (struct band){fmin(fmax(a->bandwidth / a->fs, 32.0 / a->samples), 0.5), 0, 1};
     enum status status = a->compressed ? STATUS_OK : raw_band(view, edge, band, &density);
     const double ends = EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
     band->lost += band->half >= 0.5 ? ends : pow(TAPERED, 2) * ends;
@@ -117,7 +120,7 @@ static double share_kept(const struct rma *rma, const struct rma_swath *swath)
    has. */
 static double blocks_cost(const struct rma_swath *swath)
 {
-    const double alone = 12, shared = 20, block = 6; /* operations on vectors */
+    const double alone = 12, shared = 26, block = 3; /* operations on vectors */
     double operations = swath->even ? 0 : alone * swath->needed;
     for (int n = 0; swath->even && n < swath->needed; n += rma_blocks_together(swath->needed - n))
         operations += shared;
@@ -162,7 +165,7 @@ static enum status settings_errors(const struct problem *problem, const struct r
     enum status status = band_of(&view, 0, &band);
     if (status != STATUS_OK)
         return status;
-    error[CAUSE_DELAYS] = terms ? delay_taps_expected(&view, method->taps, band.half) : 0;
+    error[CAUSE_DELAYS] = terms ? delay_taps_expected(&view, band.share, method->taps, band.half) : 0;
     /* Blocks with a given number, or with hard edges, have no law. */
     const bool lawless = options->blocks || !options->blend; /* not of terms */
     error[CAUSE_BLOCKS] = terms            ? TERMS_SHARE * delay_terms_left(&view, method->terms)

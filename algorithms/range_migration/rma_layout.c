@@ -7,11 +7,9 @@
 #include "contract/delay.h"
 #include "common/fft_length.h"
 #include "common/kaiser.h"
-#include "common/pulse_band.h"
 #include "range_migration/rma_conditions.h"
 #include "range_migration/rma_engine.h"
 
-static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: its smear stays beside the band */
 static const double OUTSIDE_MOST = 2;  /* of the record's length: rows outside it */
 static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no pulse wraps around the cut */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
@@ -68,7 +66,8 @@ enum status rma_delay_tables(struct rma *rma)
     if (!delay_terms_make(&view, rma->method.terms, &delay->terms))
         return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, rma->receivers);
     rma->work.bytes += (double)sizeof *delay + delay->terms.bytes;
-    return delay_taps_make(rma->problem.acquisition, rma->method.taps, &delay->taps);
+    return delay_taps_make(rma->problem.acquisition, (double)rma->rate_up / rma->rate_down, rma->method.taps,
+                           &delay->taps);
 }
 
 static enum status lay_track(struct rma *rma)
@@ -81,10 +80,7 @@ static enum status lay_track(struct rma *rma)
     struct rma_view view = rma_view_of(&rma->problem, &rma->method, track);
     rma->x_first = track->x_first;
     rma->spacing = track->spacing;
-    rma->t0 = a->t0[0];
-    rma->fs = a->fs;
     rma->pings = a->pings;
-    rma->samples = a->samples;
     rma->setting = view.setting;
     rma->bounds = view.bounds;
     rma->converts = view.converts;
@@ -99,27 +95,6 @@ static enum status lay_track(struct rma *rma)
         rma->farthest = fmax(rma->farthest, rma_last_row(&rma->problem.patches[k]));
     }
     return rma->method.terms > 0 ? lay_delay(rma) : STATUS_OK;
-}
-
-int rma_taper(const struct acquisition *a)
-{
-    /* For a narrow band at most an eighth of the record; the whole record at fs = B. */
-    const double band = fmax(a->bandwidth / a->fs, 8 * TAPER_PERIODS / a->samples);
-    const double share = fmax(fmin(1 - a->bandwidth / a->fs, band), TAPER_PERIODS / a->samples);
-    return (int)fmin(ceil(TAPER_PERIODS / share), a->samples);
-}
-
-/* The bins of the compressed pulse; of echoes that come compressed, twice the band. */
-static enum status lay_band(struct rma *rma)
-{
-    const struct acquisition *a = rma->problem.acquisition;
-    rma->taper = rma_taper(a);
-    struct pulse_band pulse;
-    rma->record_length = a->compressed ? 0 : fft_length_fast((long long)a->samples + a->pulse_length - 1);
-    enum status status = pulse_band_find(a, rma->record_length, &pulse);
-    rma->half_band = pulse.half_hz;
-    rma->loss = pulse.loss;
-    return status;
 }
 
 /* ---- swaths ---- */
@@ -243,7 +218,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
                           "%s: condition in_record: how far rows from %g to %g m lie outside the record's %g to %g m, "
                           "over its length, is %.3g; at most %g is needed (cure: longer records, or rows nearer to "
                           "them)",
-                          rma->method.name, swath->nearest, swath->farthest, c * rma->t0 / 2,
+                          rma->method.name, swath->nearest, swath->farthest, c * (rma->t0 + rma->early / rma->fs) / 2,
                           c * (rma->t0 + end / rma->fs) / 2, (before + after) / rma->samples, OUTSIDE_MOST);
     double from = floor(fmin(first - pulse, fmax(first - margin, 0)));
     double to = ceil(fmax(last + pulse, fmin(last + margin, end)));
@@ -264,7 +239,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     /* The tapers' smear beyond the pulse's band is part of it. */
     int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
     double half = ceil(rma->half_band / rma->fs * swath->length);
-    if (swath->begin > 0 || swath->end < rma->samples)
+    if (swath->begin > 0 || rma->early > 0 || swath->end < rma->samples)
         half += 2 * ceil((double)swath->length / rma->taper);
     swath->band_first = half < (swath->length - 1) / 2 ? -(int)half : -(swath->length / 2);
     swath->band = half < (swath->length - 1) / 2 ? 2 * (int)half + 1 : swath->length;
@@ -348,53 +323,13 @@ static enum status lay_swaths(struct rma *rma)
     return status;
 }
 
-/* Samples that the map reads before and behind a swath's own: by delays of all receivers, which are smooth in range,
-   the taps and whole runs. */
-static void map_reach(const struct rma *rma, const struct rma_swath *swath, double *before, double *behind)
-{
-    enum { RANGES = 9 };
-    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c;
-    const double to_range = c / 2 * sqrt((1 - beta) * (1 + beta)), slack = 2;
-    double least = 0, most = 0;
-    for (int m = 0; m < rma->receivers; m++)
-        for (int k = 0; k < RANGES; k++) {
-            const double tau = swath->t_first + (double)k / (RANGES - 1) * (swath->held + RMA_RUN) / rma->fs;
-            const double r = fmax(tau * to_range, DELAY_NEAREST * swath->nearest);
-            const double shift = spectrum_abeam(&rma->setting, rma->offset[m], r) * rma->fs;
-            least = fmin(least, shift);
-            most = fmax(most, shift);
-        }
-    *before = slack - least + rma->delay->taps.taps;
-    *behind = slack + most + rma->delay->taps.taps + RMA_RUN;
-}
-
-/* The samples of a record that the swaths use. Only these are compressed, as correlation of a stretch is exact. */
-static enum status lay_record(struct rma *rma)
-{
-    const int pulse = rma->record_length > 0 ? rma->problem.acquisition->pulse_length : 1;
-    double from = rma->samples, to = 0, before = 0, behind = 0;
-    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
-        if (s->end <= s->begin)
-            continue;
-        if (rma->delay)
-            map_reach(rma, s, &before, &behind);
-        from = fmin(from, floor(s->begin - before));
-        to = fmax(to, ceil(s->end + behind));
-    }
-    rma->from = from < to ? (int)fmax(0, from) : 0;
-    rma->held = from < to ? (int)fmin(to, rma->samples) - rma->from : 1;
-    rma->read = (int)fmin(rma->held + pulse - 1.0, rma->samples - rma->from);
-    if (rma->record_length > 0)
-        rma->record_length = fft_length_fast((long long)rma->held + pulse - 1);
-    return STATUS_OK;
-}
-
 /* The scratch of a thread: room for each swath in turn. */
 static void lay_scratch(struct rma *rma)
 {
     const size_t real_bytes = rma->problem.precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
     const size_t receivers = (size_t)rma->receivers, summed = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
     const size_t record = 2 * (size_t)rma->record_length * real_bytes;
+    const size_t compressed = (size_t)(rma->record_length > 0 ? rma->inverse_length : rma->held);
     size_t most[RMA_BUFFERS] = {[RMA_RECORD] = record, [RMA_TRANSFORMED] = record};
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         size_t row = 2 * (size_t)s->row * real_bytes, stolt = (size_t)s->stolt_length, needed = (size_t)s->needed;
@@ -415,7 +350,7 @@ static void lay_scratch(struct rma *rma)
             [RMA_PLACES] = (size_t)s->length * real_bytes,
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
             [RMA_STORED] = 2 * RMA_TILE * (s->rows + RMA_TILE) * real_bytes,
-            [RMA_PADDED] = rma->delay ? 2 * ((size_t)rma->held + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
+            [RMA_PADDED] = rma->delay ? 2 * (compressed + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
             [RMA_TURNS] = rma->delay ? 2 * RMA_CLASSES * receivers * real_bytes : 0,
             [RMA_EDGES] = receivers * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
             [RMA_MEMBERS] = rma->delay ? receivers * sizeof(struct rma_member) : 0,
@@ -435,8 +370,8 @@ static void lay_scratch(struct rma *rma)
 
 enum status rma_layout(struct rma *rma)
 {
-    static enum status (*const steps[])(struct rma *) = {lay_track,   lay_band,   rma_blocks_lay,
-                                                         lay_patches, lay_swaths, lay_record};
+    static enum status (*const steps[])(struct rma *) = {lay_track,   rma_band_lay, rma_blocks_lay,
+                                                         lay_patches, lay_swaths,   rma_records_lay};
     enum status status = STATUS_OK;
     for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
         status = steps[k](rma);

@@ -19,10 +19,16 @@ double rma_offset(const struct rma *rma, double nu)
     return rma->turns_rows ? -s->speed * nu / (s->sound_speed * sqrt((1 - sine) * (1 + sine))) : 0;
 }
 
-double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu)
+/* rma_correction with the K of that frequency and wavenumber, which all receivers share. */
+static double correction(const struct rma *rma, int receiver, double r, double frequency, double nu, double k)
 {
     double phase = rma->method.spectrum(&rma->setting, rma->offset[receiver], r, frequency, nu);
-    return -(phase + r * spectrum_monostatic(&rma->monostatic, frequency, nu)) / (2 * M_PI) - r * rma_offset(rma, nu);
+    return -(phase + r * k) / (2 * M_PI) - r * rma_offset(rma, nu);
+}
+
+double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu)
+{
+    return correction(rma, receiver, r, frequency, nu, spectrum_monostatic(&rma->monostatic, frequency, nu));
 }
 
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q)
@@ -78,16 +84,21 @@ void rma_polynomial(const struct rma *rma, const struct rma_line *line, int rece
    formulas of LBF and PCA are quadratic in d; the exact one differs by less than 1e-6 rad over a group. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps)
 {
+    double frequencies[FIT_DEGREE + 1], k_of[FIT_DEGREE + 1];
+    for (int n = 0; n <= FIT_DEGREE; n++) {
+        frequencies[n] = line->middle + line->half * rma->fit.nodes[n];
+        k_of[n] = spectrum_monostatic(&rma->monostatic, frequencies[n], line->nu);
+    }
     for (int begin = 0; begin < rma->receivers; begin += RMA_GROUP, ramps++) {
         int count = rma->receivers - begin < RMA_GROUP ? rma->receivers - begin : RMA_GROUP;
         double values[3][FIT_DEGREE + 1];
         for (int n = 0; n <= FIT_DEGREE; n++) {
-            double frequency = line->middle + line->half * rma->fit.nodes[n], at[3] = {0, 0, 0};
+            double at[3] = {0, 0, 0};
             int end = count - 1, middle = end / 2, points[3] = {0, end, middle};
             for (int k = 0; k < count && k < 3; k++) {
-                at[k] = rma_correction(rma, begin + points[k], r, frequency, line->nu);
+                at[k] = correction(rma, begin + points[k], r, frequencies[n], line->nu, k_of[n]);
                 if (less > 0)
-                    at[k] -= rma_correction(rma, begin + points[k], less, frequency, line->nu);
+                    at[k] -= correction(rma, begin + points[k], less, frequencies[n], line->nu, k_of[n]);
             }
             double slope = count > 1 ? (at[1] - at[0]) / end : 0;
             double bend = count > 2 ? (slope - (at[2] - at[0]) / middle) / (end - middle) : 0;

@@ -39,8 +39,11 @@ static void filter_fill(struct rma *rma)
 {
     complex_real *filter = rma->filter;
     double complex *made = pulse_filter(rma->problem.acquisition, rma->record_length);
-    for (int k = 0; made && k < rma->record_length; k++)
-        filter[k] = (complex_real)made[k];
+    const int length = rma->inverse_length, below = length / 2, beyond = rma->record_length - length;
+    for (int k = 0; made && k < length; k++) {
+        const int shift = (int)((long long)k * rma->ahead % length);
+        filter[k] = (complex_real)(made[k < length - below ? k : k + beyond] * cexp(-2 * M_PI * I * shift / length));
+    }
     rma->store.failed = rma->store.failed || !made;
     fftw_free(made);
 }
@@ -139,7 +142,7 @@ static void tables_fill(struct rma *rma)
     complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD),
                  *turned = (complex_real *)scratch_of(rma, RMA_TRANSFORMED);
     rma->record_forward = fft_line(&rma->store, rma->record_length, record, turned, FFTW_FORWARD);
-    rma->record_inverse = fft_line(&rma->store, rma->record_length, turned, record, FFTW_BACKWARD);
+    rma->record_inverse = fft_line(&rma->store, rma->inverse_length, turned, record, FFTW_BACKWARD);
     filter_fill(rma);
 }
 
@@ -159,7 +162,7 @@ static enum status plan(struct rma *rma)
     rma->focused = store_take(&rma->store, focused, sizeof(complex_real), 1);
     rma->tapers = store_take(&rma->store, (size_t)rma->taper, sizeof(real), 1);
     rma->kernel = store_take(&rma->store, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
-    rma->filter = store_take(&rma->store, (size_t)rma->record_length, sizeof(complex_real), 1);
+    rma->filter = store_take(&rma->store, (size_t)rma->inverse_length, sizeof(complex_real), 1);
     if (rma->delay)
         rma->delay->basis =
             store_take(&rma->store, (size_t)rma->delay->terms.terms * (size_t)rma->receivers, sizeof(real), 1);
@@ -194,7 +197,7 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
     memset(taken + 2 * count, 0, 2 * (size_t)(length - lead - count) * sizeof *wave);
     for (int k = 0; k < rma->taper && k < count; k++)
         for (int part = 0; part < 2; part++) {
-            taken[2 * k + part] *= swath->begin > 0 ? tapers[k] : 1;
+            taken[2 * k + part] *= swath->begin > 0 || rma->early > 0 ? tapers[k] : 1;
             taken[2 * (count - 1 - k) + part] *= swath->end < rma->samples ? tapers[k] : 1;
         }
     FFTW(execute_dft)(swath->range_forward, (complex_real *)wave, (complex_real *)bins);
@@ -204,41 +207,39 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
     memset(row + 2 * swath->band, 0, 2 * (size_t)(swath->row - swath->band) * sizeof *row);
 }
 
-/* The stored part of a compressed record, between zeros. */
-static real *padded(const struct rma *rma, const real *record)
-{
-    const size_t guard = 2 * (size_t)rma->delay->guard, n = 2 * (size_t)rma->held;
-    real *out = scratch_of(rma, RMA_PADDED);
-    memset(out, 0, guard * sizeof *out);
-    memcpy(out + guard, record, n * sizeof *out);
-    memset(out + guard + n, 0, guard * sizeof *out);
-    return out;
-}
-
 /* Ping k of a receiver: pulse compression by a linear correlation, then each swath's cut. */
 static void compress(const struct rma *rma, rma_map_function *map, const void *samples, int receiver, int k,
                      double seconds[RMA_SPREADS])
 {
-    const size_t all = 2 * (size_t)rma->samples, n = 2 * (size_t)rma->read, length = 2 * (size_t)rma->record_length;
+    const size_t all = 2 * (size_t)rma->problem.acquisition->samples, n = 2 * (size_t)rma->read,
+                 length = 2 * (size_t)rma->record_length;
     const real *record = (const real *)samples + all * ((size_t)k * (size_t)rma->receivers + (size_t)receiver);
     const double begun = clock_monotonic();
-    record += 2 * (size_t)rma->from;
+    const size_t guard = rma->delay ? 2 * (size_t)rma->delay->guard : 0, held = 2 * (size_t)rma->held;
+    real *padded = rma->delay ? scratch_of(rma, RMA_PADDED) : NULL;
+    record += 2 * (size_t)rma->read_from;
     if (length > 0) {
         real *wave = scratch_of(rma, RMA_RECORD), *bins = scratch_of(rma, RMA_TRANSFORMED);
         memcpy(wave, record, n * sizeof *wave);
         memset(wave + n, 0, (length - n) * sizeof *wave);
         FFTW(execute_dft)(rma->record_forward, (complex_real *)wave, (complex_real *)bins);
-        multiply(bins, rma->filter, rma->record_length);
+        const size_t below = 2 * (size_t)(rma->inverse_length / 2), kept = 2 * (size_t)rma->inverse_length;
+        if (kept < length)
+            memmove(bins + kept - below, bins + length - below, below * sizeof *bins);
+        multiply(bins, rma->filter, rma->inverse_length);
+        wave = rma->delay ? padded + guard : wave;
         FFTW(execute_dft)(rma->record_inverse, (complex_real *)bins, (complex_real *)wave);
         record = wave;
-    }
-    const real *between = rma->delay ? padded(rma, record) : NULL;
+    } else if (rma->delay)
+        memcpy(padded + guard, record, held * sizeof *padded);
+    for (int end = 0; rma->delay && end < 2; end++)
+        memset(padded + (size_t)end * (guard + held), 0, guard * sizeof *padded);
     const real weight = (real)stretch_weight(&rma->stretch, k);
     const double compressed = clock_monotonic();
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         real *row = (real *)s->data + rma_row(s, receiver, k);
         if (rma->delay)
-            map(rma, s, receiver, between, row);
+            map(rma, s, receiver, padded, row);
         else
             cut(rma, s, record, row);
         for (size_t i = 0; weight < 1 && i < 2 * (size_t)s->row; i++)
@@ -317,7 +318,7 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
         for (size_t k = 0; k < columns; k += RMA_TILE) {
             __builtin_prefetch(from + 2 * (k + AHEAD));
             for (size_t n = k; n < k + RMA_TILE; n++)
-                *(one *)(wave + 2 * bins[n]) += *(const one *)(from + 2 * n);
+                *(one *)(wave + 2 * bins[n]) += root * *(const one *)(from + 2 * n);
         }
         if (!patch->folds) {
             memcpy(turned, wave, 2 * (size_t)length * sizeof *wave);
@@ -326,8 +327,6 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
         }
         FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)turned);
         multiply(turned, patch->after, patch->grid.x_count);
-        for (size_t k = 0; k < 2 * x_count; k++)
-            turned[k] *= root;
         if (streams)
             stream_copy(out, turned, 2 * x_count * sizeof *out);
         else

@@ -14,7 +14,7 @@ static void weights_fill(struct monostatic *m)
 {
     struct delay_taps *taps = store_take(&m->store, 1, sizeof *taps, 1);
     m->weights = store_take(&m->store, (size_t)(MONOSTATIC_NODES + 1) * (size_t)m->taps, sizeof(real), 1);
-    m->store.failed = m->store.failed || delay_taps_make(m->acquisition, m->taps, taps) != STATUS_OK;
+    m->store.failed = m->store.failed || delay_taps_make(m->acquisition, 1, m->taps, taps) != STATUS_OK;
     for (int i = 0; i <= MONOSTATIC_NODES && !m->store.failed; i++) {
         double weights[DELAY_TAPS], slopes[DELAY_TAPS];
         delay_taps_weights(taps, (double)i / MONOSTATIC_NODES, weights, slopes);

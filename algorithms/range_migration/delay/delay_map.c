@@ -5,23 +5,26 @@
 
 #include "range_migration/column.h"
 
-enum { VECTORS = 2 * RMA_RUN / VECTOR };
+enum { VECTORS = 2 * RMA_RUN / VECTOR, TOGETHER = 2 /* vectors that share a tap's weights */ };
 
 /* One run: taps at its middle, and their slope along it. `taps` is a constant where this is inlined. */
 static inline __attribute__((always_inline)) void run_taps(int taps, const real *x, const real *weights,
                                                            const real *slopes, real *values)
 {
-    for (int v = 0; v < VECTORS; v++) {
-        vec sum = {0}, slope = {0};
-        for (int k = 0; k < taps; k++) {
-            const vec s = *(const vec_unaligned *)(x + 2 * k + v * VECTOR);
-            sum += weights[k] * s;
-            slope += slopes[k] * s;
+    for (int v = 0; v < VECTORS; v += TOGETHER) {
+        vec sum[TOGETHER] = {{0}}, slope[TOGETHER] = {{0}};
+        for (int k = 0; k < taps; k++)
+            for (int i = 0; i < TOGETHER; i++) {
+                const vec s = *(const vec_unaligned *)(x + 2 * k + (v + i) * VECTOR);
+                sum[i] += weights[k] * s;
+                slope[i] += slopes[k] * s;
+            }
+        for (int i = 0; i < TOGETHER; i++) {
+            real along[VECTOR];
+            for (int l = 0; l < VECTOR; l++)
+                along[l] = (real)(((v + i) * VECTOR + l) / 2) - (real)(RMA_RUN - 1) / 2;
+            *(vec_unaligned *)(values + (v + i) * VECTOR) = sum[i] + *(const vec_unaligned *)along * slope[i];
         }
-        real along[VECTOR];
-        for (int l = 0; l < VECTOR; l++)
-            along[l] = (real)((v * VECTOR + l) / 2) - (real)(RMA_RUN - 1) / 2;
-        *(vec_unaligned *)(values + v * VECTOR) = sum + *(const vec_unaligned *)along * slope;
     }
 }
 

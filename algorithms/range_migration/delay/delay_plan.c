@@ -38,7 +38,7 @@ static double fade(const struct rma *rma, const struct rma_swath *swath, int sam
 {
     const real *tapers = rma->tapers;
     double weight = sample >= swath->begin && sample < swath->end;
-    if (swath->begin > 0 && sample >= swath->begin && sample - swath->begin < rma->taper)
+    if ((swath->begin > 0 || rma->early > 0) && sample >= swath->begin && sample - swath->begin < rma->taper)
         weight *= tapers[sample - swath->begin];
     if (swath->end < rma->samples && sample < swath->end && swath->end - 1 - sample < rma->taper)
         weight *= tapers[swath->end - 1 - sample];

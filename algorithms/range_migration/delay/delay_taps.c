@@ -18,10 +18,11 @@ static double frequency_of(int bin)
     return (bin + 0.5) / BINS - 0.5;
 }
 
-/* The compressed pulse's energy by frequency, bin k about frequency_of(k) of the sampling rate; their sum is 1. */
-static enum status spectrum_fill(const struct acquisition *a, double energy[BINS])
+/* The compressed pulse's energy by frequency, bin k about frequency_of(k) of `share` of the sampling rate; their sum
+   is 1. */
+static enum status spectrum_fill(const struct acquisition *a, double share, double energy[BINS])
 {
-    const double half = a->bandwidth / 2 / a->fs;
+    const double half = a->bandwidth / 2 / (share * a->fs);
     double sum = 0;
     memset(energy, 0, BINS * sizeof *energy);
     if (a->compressed) {
@@ -35,8 +36,9 @@ static enum status spectrum_fill(const struct acquisition *a, double energy[BINS
         if (!bins)
             return STATUS_FAILED;
         for (int k = 0; k < length; k++) {
-            int bin = (int)(((k + length / 2) % length + 0.5) / length * BINS);
-            energy[bin < BINS ? bin : BINS - 1] += bins[k];
+            const double place = ((k < length - length / 2 ? k : k - length) + 0.5) / (share * length) + 0.5;
+            if (place >= 0 && place < 1)
+                energy[(int)(place * BINS)] += bins[k];
         }
         free(bins);
     }
@@ -67,11 +69,11 @@ struct normal {
     double energy[BINS], lower[DELAY_TAPS * DELAY_TAPS];
 };
 
-static enum status normal_make(const struct acquisition *acquisition, int taps, struct normal *normal)
+static enum status normal_make(const struct acquisition *acquisition, double share, int taps, struct normal *normal)
 {
     double between[DELAY_TAPS], unused;
     normal->taps = taps;
-    enum status status = spectrum_fill(acquisition, normal->energy);
+    enum status status = spectrum_fill(acquisition, share, normal->energy);
     if (status != STATUS_OK)
         return status;
     for (int k = 0; k < taps; k++)
@@ -80,26 +82,15 @@ static enum status normal_make(const struct acquisition *acquisition, int taps, 
     return STATUS_OK;
 }
 
-/* Weights for a fraction of a sample and their slopes over it; returns the error. */
-static double weights_solve(const struct normal *normal, double fraction, double weights[DELAY_TAPS],
-                            double slopes[DELAY_TAPS])
+/* Weights for a fraction of a sample and their slopes over it. */
+static void weights_solve(const struct normal *normal, double fraction, double weights[DELAY_TAPS],
+                          double slopes[DELAY_TAPS])
 {
     const int taps = normal->taps;
-    double aims[DELAY_TAPS], left = 1;
     for (int k = 0; k < taps; k++)
-        aims[k] = weights[k] = correlation(normal->energy, fraction - (k + 1 - taps / 2), &slopes[k]);
+        weights[k] = correlation(normal->energy, fraction - (k + 1 - taps / 2), &slopes[k]);
     cholesky_solve(taps, normal->lower, weights);
     cholesky_solve(taps, normal->lower, slopes);
-    for (int k = 0; k < taps; k++)
-        left -= weights[k] * aims[k];
-    return sqrt(fmax(left, 0));
-}
-
-double delay_taps_error(const struct acquisition *acquisition, int taps)
-{
-    struct normal normal;
-    double weights[DELAY_TAPS], slopes[DELAY_TAPS];
-    return normal_make(acquisition, taps, &normal) == STATUS_OK ? weights_solve(&normal, 0.5, weights, slopes) : NAN;
 }
 
 /* The error half-way between two samples, over the frequencies kept: without the floor and the cut flanks. The weights
@@ -118,29 +109,39 @@ static double middle_error(const struct normal *normal, double half, const doubl
     return sqrt(left);
 }
 
-double delay_taps_expected(const struct rma_view *view, int taps, double half)
+double delay_taps_error(const struct acquisition *acquisition, double share, int taps, double half)
+{
+    struct normal normal;
+    double weights[DELAY_TAPS], slopes[DELAY_TAPS];
+    if (normal_make(acquisition, share, taps, &normal) != STATUS_OK)
+        return NAN;
+    weights_solve(&normal, 0.5, weights, slopes);
+    return middle_error(&normal, half / share, weights);
+}
+
+double delay_taps_expected(const struct rma_view *view, double share, int taps, double half)
 {
     const struct problem *problem = view->problem;
     const struct acquisition *a = problem->acquisition;
     const int every = (a->receivers + RECEIVERS - 1) / RECEIVERS;
     struct normal normal;
     double weights[DELAY_TAPS], slopes[DELAY_TAPS], sum = 0, count = 0;
-    if (normal_make(a, taps, &normal) != STATUS_OK)
+    if (normal_make(a, share, taps, &normal) != STATUS_OK)
         return NAN;
     weights_solve(&normal, 0.5, weights, slopes);
     for (int k = 0; k < 2 * problem->patch_count; k++)
         for (int m = 0; m < a->receivers; m += every, count++) {
             const struct grid *g = &problem->patches[k / 2];
             const double r = g->r_first + k % 2 * (g->r_count - 1) * g->r_step;
-            sum += pow(sin(M_PI * a->fs * spectrum_abeam(&view->setting, a->rx[m].x - a->tx[0].x, r)), 2);
+            sum += pow(sin(M_PI * share * a->fs * spectrum_abeam(&view->setting, a->rx[m].x - a->tx[0].x, r)), 2);
         }
-    return middle_error(&normal, half, weights) * sqrt(sum / count);
+    return middle_error(&normal, half / share, weights) * sqrt(sum / count);
 }
 
-enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made)
+enum status delay_taps_make(const struct acquisition *acquisition, double share, int taps, struct delay_taps *made)
 {
     struct normal normal;
-    enum status status = normal_make(acquisition, taps, &normal);
+    enum status status = normal_make(acquisition, share, taps, &normal);
     if (status != STATUS_OK)
         return status;
     made->taps = taps;
