@@ -177,44 +177,6 @@ static void short_swath(void **state)
     free_scene(&scene);
 }
 
-/* The same image whether receivers are summed before or after the range IFFT: before it for several blocks at once, but
-   for what their corrections are off even steps, far below the 2 pi 1e-10 that are taken for even here. */
-static void other_ways(void **state)
-{
-    (void)state;
-    static const struct grid part = {-0.14, 0.02, 8, 36, 0.5, 17};
-    static const double targets[] = {36.4, 38.1, 42.9};
-    static const struct {
-        const char *spec, *other;
-        double bound;
-    } pairs[] = {
-        {"rma_lbf:blocks=4,precision=double", "rma_lbf:blocks=4,sum=after,precision=double", 1e-11},
-        {"rma_lbf:blocks=4", "rma_lbf:blocks=4,sum=after,phases=libm", 2e-6},
-        {"rma_lbf:blocks=15,precision=double", "rma_lbf:blocks=15,sum=after,precision=double", 1e-11},
-        {"rma_lbf:blocks=15", "rma_lbf:blocks=15,sum=after,phases=libm", 2e-6},
-        {"rma_lbf:blocks=11,variant=printed", "rma_lbf:blocks=11,variant=printed,sum=after,phases=libm", 2e-6},
-        {"rma_lbf:blocks=6,spacing=uniform,precision=double",
-         "rma_lbf:blocks=6,spacing=uniform,sum=after,precision=double", 1e-14},
-        {"rma_numeric:blocks=4,precision=double", "rma_numeric:blocks=4,sum=after,precision=double", 1e-14},
-        {"rma_pca:blocks=1,precision=double", "rma_pca:blocks=1,sum=after,precision=double", 1e-14},
-    };
-    struct scene scene;
-    struct echoes echoes;
-    make_scene(&(struct rma_track){8, 40, 1066, 40e3, 0.044, -2.8, 0.8, 0.04}, &scene);
-    add_targets(&scene, 3, targets);
-    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-    struct problem problem = problem_make(&scene.acquisition, 1, &part, PRECISION_DOUBLE);
-    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
-        struct image image;
-        form(pairs[k].spec, problem, &echoes, &image);
-        assert_up_to(swath_error(pairs[k].other, problem, &echoes, &image), pairs[k].bound, "%s against %s",
-                     pairs[k].spec, pairs[k].other);
-        image_free(&image);
-    }
-    echoes_free(&echoes);
-    free_scene(&scene);
-}
-
 /* The same pixels on columns that one transform gives, fewer or more than wavenumbers, and on columns that take a
    chirp (11 divides their number). */
 static void columns(void **state)
@@ -436,10 +398,16 @@ static void odd_tracks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(independent_numbers), cmocka_unit_test(short_swath), cmocka_unit_test(other_ways),
-        cmocka_unit_test(recurrences),         cmocka_unit_test(long_swath),  cmocka_unit_test(block_counts),
-        cmocka_unit_test(printed_chain),       cmocka_unit_test(ghosts),      cmocka_unit_test(one_receiver),
-        cmocka_unit_test(odd_tracks),          cmocka_unit_test(columns),
+        cmocka_unit_test(independent_numbers),
+        cmocka_unit_test(short_swath),
+        cmocka_unit_test(recurrences),
+        cmocka_unit_test(long_swath),
+        cmocka_unit_test(block_counts),
+        cmocka_unit_test(printed_chain),
+        cmocka_unit_test(ghosts),
+        cmocka_unit_test(one_receiver),
+        cmocka_unit_test(odd_tracks),
+        cmocka_unit_test(columns),
     };
     return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
 }
