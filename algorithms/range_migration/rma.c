@@ -111,9 +111,7 @@ static enum status count_work(struct rma *rma)
     bool *used = calloc((size_t)rma->block_count, sizeof *used), differential = false;
     if (!used)
         return status_set(STATUS_FAILED, "%s: no memory for %d blocks", rma->method.name, rma->block_count);
-    if (rma->record_length > 0)
-        work->flops = (double)rma->receivers * rma->pings
-                      * (fft_flops(rma->record_length) + fft_flops(rma->inverse_length) + 6.0 * rma->inverse_length);
+    work->flops = rma_compression_flops(rma);
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         work->flops += swath_flops(rma, s);
         taken += s->end - s->begin;

@@ -311,6 +311,9 @@ int rma_taper(const struct acquisition *acquisition);
    band, |f| <= half_hz, and the taps of the receivers' delays. */
 double rma_share(const struct acquisition *acquisition, const struct rma_method *method, double half_hz);
 
+/* FLOPs of the compression of all records. */
+double rma_compression_flops(const struct rma *rma);
+
 /* ---- rma.c ---- */
 /* A plan of counted work, without memory for echoes or transforms; rma_destroy releases it. Errors: as rma_layout, and
    STATUS_UNSUPPORTED where work or memory would be too large; *rma is then NULL. */

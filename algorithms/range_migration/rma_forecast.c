@@ -193,9 +193,7 @@ enum status rma_cost(const struct problem *problem, const void *given, const voi
     if (status != STATUS_OK)
         return status;
     forecast->migration_flops = rma->work.flops;
-    if (rma->record_length > 0)
-        forecast->migration[MIGRATION_RECORDS] =
-            (double)rma->receivers * rma->pings * (2 * fft_flops(rma->record_length) + 6 * rma->record_length);
+    forecast->migration[MIGRATION_RECORDS] = rma_compression_flops(rma);
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++)
         swath_cost(rma, s, forecast->migration);
     rma_destroy(rma);

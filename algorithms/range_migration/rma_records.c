@@ -101,3 +101,9 @@ enum status rma_records_lay(struct rma *rma)
     rma->inverse_length = rma->record_length / down * up;
     return STATUS_OK;
 }
+
+double rma_compression_flops(const struct rma *rma)
+{
+    const double transforms = fft_flops(rma->record_length) + fft_flops(rma->inverse_length);
+    return rma->record_length > 0 ? (double)rma->receivers * rma->pings * (transforms + 6.0 * rma->inverse_length) : 0;
+}
