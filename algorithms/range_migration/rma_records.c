@@ -91,13 +91,12 @@ enum status rma_records_lay(struct rma *rma)
     const int up = rma->rate_up, down = rma->rate_down;
     rma->from = from < to ? (int)fmax(0, from) / up * up : 0; /* where both rates have a sample */
     rma->held = from < to ? (int)fmin(to, rma->samples) - rma->from : 1;
-    const int ahead = rma->from < rma->early ? rma->early - rma->from : 0; /* of the echoes' first sample */
-    rma->read_from = (rma->from + ahead - rma->early) / up * down;
-    rma->ahead = ahead;
-    const double needed = ceil((double)rma->held * down / up) + pulse - 1;
-    rma->read = (int)fmin(needed, rma->problem.acquisition->samples - (double)rma->read_from);
+    rma->ahead = (int)fmax(rma->early - rma->from, 0);
+    rma->read_from = (rma->from + rma->ahead - rma->early) / up * down;
+    const double echoes = ceil(fmax(rma->held - rma->ahead, 0) * down / up), early = rma->ahead / up * down;
+    rma->read = (int)fmin(echoes + pulse - 1, rma->problem.acquisition->samples - (double)rma->read_from);
     if (rma->record_length > 0)
-        rma->record_length = down * fft_length_fast((long long)ceil(needed / down));
+        rma->record_length = down * fft_length_fast((long long)ceil((early + echoes + pulse - 1) / down));
     rma->inverse_length = rma->record_length / down * up;
     return STATUS_OK;
 }
