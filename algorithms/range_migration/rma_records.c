@@ -103,6 +103,8 @@ enum status rma_records_lay(struct rma *rma)
 
 double rma_compression_flops(const struct rma *rma)
 {
-    const double transforms = fft_flops(rma->record_length) + fft_flops(rma->inverse_length);
-    return rma->record_length > 0 ? (double)rma->receivers * rma->pings * (transforms + 6.0 * rma->inverse_length) : 0;
+    const double forward = rma->record_length, back = rma->inverse_length;
+    if (!(forward > 0))
+        return 0;
+    return (double)rma->receivers * rma->pings * (fft_flops(forward) + fft_flops(back) + 6 * back);
 }
