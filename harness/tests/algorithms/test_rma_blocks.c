@@ -42,8 +42,8 @@ static void other_ways(void **state)
     free_scene(&scene);
 }
 
-/* Three and more blocks of rma_lbf share their receivers' phases. Those of other formulas, and blocks of even ranges, do
-   not: their corrections differ by other amounts from block to block. */
+/* Three and more blocks of rma_lbf share their receivers' phases. Those of other formulas, and blocks of even ranges,
+   do not: their corrections differ by other amounts from block to block. */
 static void shared(void **state)
 {
     (void)state;
