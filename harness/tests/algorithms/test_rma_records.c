@@ -65,9 +65,9 @@ static void lower_rate(void **state)
                 {"rma_lbf:blocks=6,precision=double", 2e-4},
                 {"rma_lbf:blocks=6,blend=off,precision=double", 3e-4},
                 {"rma_pca:sum=after,precision=double", 2e-4},
-                {"rma_delay:precision=double", 5e-4},
-                {"rma_delay", 5e-4},
-                {"rma_chirp:precision=double", 5e-4}};
+                {"rma_delay:precision=double", 3e-4},
+                {"rma_delay", 3e-4},
+                {"rma_chirp:precision=double", 3e-4}};
     static const double targets[] = {60.2, 64.1};
     static const struct grid part = {-0.14, 0.02, 15, 59, 0.02, 300};
     struct scene scene;
