@@ -359,15 +359,15 @@ struct correction {
 };
 
 /* Receivers at bins [k, k + n) times exp(j 2 pi correction). */
-static void apply(const struct workspace *w, struct correction correction, int k, int n, struct rows in,
+static void apply(const struct workspace *w, const struct correction *correction, int k, int n, struct rows in,
                   struct rows stored, real *sum)
 {
     if (sum)
         memset(sum, 0, 2 * (size_t)n * sizeof *sum);
     if (w->rma->recurs)
-        apply_recurrence(w, correction.ramps, k, n, in, stored, sum);
+        apply_recurrence(w, correction->ramps, k, n, in, stored, sum);
     else
-        apply_libm(w, correction.r, correction.less, k, n, in, stored, sum);
+        apply_libm(w, correction->r, correction->less, k, n, in, stored, sum);
 }
 
 void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
@@ -416,13 +416,14 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
         struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};
         if (!add)
             converted = (struct rows){own, row};
-        apply(w, (struct correction){bulk, centre, 0}, k, n, in, add && swath->needed == 1 ? none : converted,
-              add ? own : NULL);
+        const struct correction whole = {bulk, centre, 0};
+        apply(w, &whole, k, n, in, add && swath->needed == 1 ? none : converted, add ? own : NULL);
         stage_end(w, RMA_BULK);
-        for (int b = 0; b < swath->needed; b++, out += block)
+        for (int b = 0; b < swath->needed; b++, out += block) {
+            const struct correction rest = {ramps + b * rma->groups, rma_block_range(rma, swath->blocks[b]), centre};
             if (b != reference)
-                apply(w, (struct correction){ramps + b * rma->groups, rma_block_range(rma, swath->blocks[b]), centre},
-                      k, n, converted, add ? none : (struct rows){out, row}, add ? out : NULL);
+                apply(w, &rest, k, n, converted, add ? none : (struct rows){out, row}, add ? out : NULL);
+        }
         stage_end(w, RMA_DIFFERENTIAL);
     }
 }
