@@ -174,12 +174,28 @@ static struct work monostatic_work(const void *plan)
     return ((const struct monostatic *)plan)->work;
 }
 
+static enum status monostatic_forecast(const struct problem *problem, const void *method, const void *options,
+                                       struct forecast *forecast)
+{
+    void *plan;
+    const enum status status = monostatic_plan(problem, method, options, &plan);
+    if (status != STATUS_OK)
+        return status;
+    const struct monostatic *m = plan;
+    *forecast = (struct forecast){.error[CAUSE_DELAYS] = m->left,
+                                  .migration[MIGRATION_RECORDS] = m->work.flops,
+                                  .migration_flops = m->work.flops};
+    monostatic_destroy(plan);
+    return STATUS_OK;
+}
+
 const struct algorithm monostatic = {
     .name = "monostatic",
     .summary = "receivers become pings of a monostatic sonar on a straight track",
     .reference = "SQ18 section 1, [2]; this project's delays",
     .options_size = sizeof(struct options),
     .params = params,
+    .forecast = monostatic_forecast,
     .plan = monostatic_plan,
     .filtered = monostatic_filtered,
     .filter = monostatic_filter,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "contract/param.h"
+#include "guests/guests.h"
 
 /* Set a parameter of the table by its text. False where it is unknown, or does not accept the value. */
 static bool setting_store(const struct algorithm *algorithm, void *options, const char *key, const char *value)
@@ -60,7 +61,16 @@ static bool candidate_fill(const struct algorithm *algorithm, const struct candi
     return !*varied || candidate->budgeted || candidate_set(candidate, varied, value);
 }
 
-int candidates_fill(struct candidate *list)
+/* Behind motion compensation every range migration has one receiver at the transmitter, and the same image. */
+static bool chain_fill(int number, struct candidate *candidate)
+{
+    static const struct candidate_family family = {"", "", ""};
+    static const char name[] = "monostatic | rma_delay";
+    const char *rest;
+    return guest_invite(name) == STATUS_OK && candidate_fill(guest_find(name, &rest), &family, number, "", candidate);
+}
+
+int candidates_fill(const struct acquisition *acquisition, struct candidate *list)
 {
     int count = 0, number = 0;
     for (int k = 0; algorithms[k]; k++)
@@ -73,5 +83,7 @@ int candidates_fill(struct candidate *list)
                     count++;
             } while (rest);
         }
+    if (!acquisition_is_straight(acquisition, NULL) && count < CANDIDATES_MAX && chain_fill(number, &list[count]))
+        count++;
     return count;
 }

@@ -7,8 +7,8 @@
 enum { CANDIDATES_MAX = 128 };
 
 /* Fill list[CANDIDATES_MAX] with algorithm, settings and options of every candidate, back projections first; the rest
-   is zero. Returns their number. */
-int candidates_fill(struct candidate *list);
+   is zero. Returns their number. Range migration of a track that is not straight is a chain. */
+int candidates_fill(const struct acquisition *acquisition, struct candidate *list);
 
 /* Add a setting to a candidate; false where its algorithm has no such parameter or does not accept the value. */
 bool candidate_set(struct candidate *candidate, const char *key, const char *value);

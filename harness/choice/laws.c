@@ -229,7 +229,7 @@ enum status laws_complete(const struct setting *setting, struct candidate *c)
 
 enum status laws_fill(struct setting *setting, struct choice *choice)
 {
-    const int all = candidates_fill(choice->list);
+    const int all = candidates_fill(setting->problem->acquisition, choice->list);
     struct candidate *first = &choice->list[0];
     enum status status = STATUS_OK;
     setting->ratio = 1;

@@ -77,6 +77,7 @@ static enum status link_echoes(struct link *link, enum precision precision)
     return STATUS_OK;
 }
 
+/* Without room for its echoes. */
 static enum status filter_plan(struct chain_plan *plan, int k)
 {
     const struct spec *filter = &plan->chain->filters[k];
@@ -91,7 +92,7 @@ static enum status filter_plan(struct chain_plan *plan, int k)
     if (status == STATUS_OK)
         status = filter->algorithm->filtered(link->plan, &link->acquisition);
     link->acquisition.filtered = true;
-    return status == STATUS_OK ? link_echoes(link, problem.precision) : status;
+    return status;
 }
 
 /* The work that timing holds against the problem is, of a chain, that of its last link's echoes. */
@@ -112,8 +113,11 @@ static enum status last_plan(struct chain_plan *plan)
 static enum status plans_make(struct chain_plan *plan, int first)
 {
     enum status status = STATUS_OK;
-    for (int k = first; k < plan->chain->count && status == STATUS_OK; k++)
+    for (int k = first; k < plan->chain->count && status == STATUS_OK; k++) {
         status = filter_plan(plan, k);
+        if (status == STATUS_OK)
+            status = link_echoes(&plan->links[k], plan->problem.precision);
+    }
     return status == STATUS_OK ? last_plan(plan) : status;
 }
 
@@ -261,15 +265,26 @@ static struct work chain_work(const void *data)
     return work;
 }
 
+/* The filters alone are planned; *plan goes to chain_destroy. */
+static enum status filters_plan(const struct chain *chain, const struct problem *problem, const void *options,
+                                struct chain_plan **plan)
+{
+    enum status status = STATUS_OK;
+    *plan = chain_begin(chain, problem, options);
+    if (!*plan)
+        return status_set(STATUS_FAILED, "%s: no memory for a plan", chain->name);
+    for (int k = 0; k < chain->count && status == STATUS_OK; k++)
+        status = filter_plan(*plan, k);
+    return status;
+}
+
 /* Those of the last link, of the filtered recording; none where a filter refuses. */
 static int chain_conditions(const struct problem *problem, const void *method, const void *options,
                             struct condition *list, int room)
 {
     const struct chain *chain = method;
-    struct chain_plan *plan = chain_begin(chain, problem, options);
-    enum status status = plan ? STATUS_OK : STATUS_FAILED;
-    for (int k = 0; k < chain->count && status == STATUS_OK; k++)
-        status = filter_plan(plan, k);
+    struct chain_plan *plan;
+    enum status status = filters_plan(chain, problem, options, &plan);
     int count = 0;
     if (status == STATUS_OK) {
         const struct problem last = problem_at(plan, chain->count);
@@ -277,6 +292,51 @@ static int chain_conditions(const struct problem *problem, const void *method, c
     }
     chain_destroy(plan);
     return count;
+}
+
+/* That of the last link, of the filtered recording, and of each filter: errors' squares and counts add up. */
+static enum status chain_forecast_by(bool errors, const struct problem *problem, const struct chain *chain,
+                                     const void *options, struct forecast *forecast)
+{
+    struct chain_plan *plan;
+    enum status status = filters_plan(chain, problem, options, &plan);
+    if (status == STATUS_OK) {
+        const struct problem last = problem_at(plan, chain->count);
+        status = (errors ? algorithm_forecast : algorithm_cost)(chain->last, &last, options, forecast);
+    }
+    for (int k = 0; k < chain->count && status == STATUS_OK; k++) {
+        const struct spec *filter = &chain->filters[k];
+        const struct problem own = problem_at(plan, k);
+        struct forecast added;
+        status = algorithm_forecast(filter->algorithm, &own, filter->options, &added);
+        for (int cause = 0; cause < CAUSES; cause++)
+            forecast->error[cause] = hypot(forecast->error[cause], added.error[cause]);
+        forecast->migration[MIGRATION_RECORDS] += added.migration[MIGRATION_RECORDS];
+        forecast->migration_flops += added.migration_flops;
+    }
+    chain_destroy(plan);
+    return status;
+}
+
+static enum status chain_forecast(const struct problem *problem, const void *method, const void *options,
+                                  struct forecast *forecast)
+{
+    return chain_forecast_by(true, problem, method, options, forecast);
+}
+
+static enum status chain_cost(const struct problem *problem, const void *method, const void *options,
+                              struct forecast *forecast)
+{
+    return chain_forecast_by(false, problem, method, options, forecast);
+}
+
+/* Are all links range migrations and filters with a forecast? */
+static bool has_forecast(const struct chain *chain)
+{
+    bool all = chain->last->forecast && !(chain->last->traits & TRAIT_APERTURE_LIMIT);
+    for (int k = 0; k < chain->count; k++)
+        all = all && chain->filters[k].algorithm->forecast;
+    return all;
 }
 
 /* ---- the text of a SPEC ---- */
@@ -374,6 +434,8 @@ static enum status chain_make(const char *name, struct algorithm *algorithm)
         .params = chain->last->params,
         .method = chain,
         .conditions = chain_conditions,
+        .forecast = has_forecast(chain) ? chain_forecast : NULL,
+        .cost = has_forecast(chain) ? chain_cost : NULL,
         .plan = chain_plan,
         .execute = chain_execute,
         .work = chain_work,

@@ -108,7 +108,7 @@ static void sweep_make(struct sweep *sweep)
     static struct candidate candidates[CANDIDATES_MAX];
     *sweep = (struct sweep){.list = calloc(SETTINGS_MOST, sizeof *sweep->list)};
     assert_non_null(sweep->list);
-    const int count = candidates_fill(candidates);
+    const int count = candidates_fill(problem.acquisition, candidates);
     for (int k = 0; k < count; k++) {
         struct spec spec;
         spec_make(candidates[k].algorithm->name, candidates[k].settings, &spec);
