@@ -43,6 +43,7 @@ struct budget {
     double error;         /* relative L2 of the complex image after one best complex gain, > 0 */
     double bytes;         /* that the process may take */
     double seconds;       /* that an image may take that is formed to measure its error; 0: laws alone */
+    bool windows;         /* by settings alone that form a part of an image, of the pings that it takes */
     bool all;             /* count slower back projections and compute their errors by law as well */
     struct region region; /* of the image, where the error counts */
 };

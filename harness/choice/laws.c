@@ -239,6 +239,8 @@ enum status laws_fill(struct setting *setting, struct choice *choice)
     for (int k = 0; k < all && status == STATUS_OK; k++) {
         struct candidate *c = &choice->list[choice->count];
         *c = choice->list[k];
+        if (setting->budget->windows && !(c->algorithm->traits & TRAIT_WINDOW))
+            continue;
         /* Without tables all are of the general engine, whatever the setting. */
         if (k > 0 && !first->forecast.tables && strstr(c->settings, "engine=general"))
             continue;

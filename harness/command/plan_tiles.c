@@ -25,6 +25,7 @@ static enum status tile_plan(const struct scene *scene, const struct budget *bud
     struct acquisition flown;
     struct budget own = *budget;
     own.bytes = INFINITY; /* tile_choose holds it */
+    own.windows = true;
     part.patches = &grid;
     part.acquisition = acquisition_part(&scene->acquisition, first, pings);
     part.recording.first = first;
