@@ -184,8 +184,8 @@ struct algorithm {
     /* The promised relative L2 error of an image by these settings; a row with more warns. NAN, or NULL: no promise. */
     double (*promise)(const void *options);
     /* Predict error and cost of the settings for a problem, without a plan; far cheaper than one, but for range
-       migration and filters. Errors: STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: no
-       prediction, and no planner chooses the algorithm. */
+       migration and filters. Errors: STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL:
+       no prediction, and no planner chooses the algorithm. */
     enum status (*forecast)(const struct problem *problem, const void *method, const void *options,
                             struct forecast *forecast);
     /* The counts alone, where errors take longer; of the errors, those that cost nothing. Errors: as forecast, without

@@ -25,7 +25,7 @@ enum reading_kind { READ_NEAREST, READ_LINE, READ_TAPS, READ_BRANCHES, READ_KIND
 enum migration {
     MIGRATION_RECORDS, /* FLOPs of the records' transforms and delays */
     MIGRATION_SPREAD,  /* values that are transformed over the pings and put where wavenumbers read them */
-    MIGRATION_BLOCKS,  /* FLOPs that convert receivers, block by block */
+    MIGRATION_BLOCKS,  /* FLOPs that convert receivers: block by block, or by a filter */
     MIGRATION_TERMS,   /* FLOPs that add receivers up by terms */
     MIGRATION_FOCUS,   /* bins and rows that transforms and the Stolt interpolation make of all wavenumbers */
     MIGRATIONS

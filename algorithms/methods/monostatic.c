@@ -122,6 +122,9 @@ static enum status monostatic_plan(const struct problem *problem, const void *me
                              .straight = straight,
                              .rows = rows,
                              .threads = omp_get_max_threads(),
+                             .record_loop = ISA_CHOOSE(monostatic_record, problem->precision),
+                             .vector_loop = ISA_CHOOSE(monostatic_vector, problem->precision),
+                             .product_loop = ISA_CHOOSE(monostatic_product, problem->precision),
                              .taps = taps[((const struct options *)options)->taps]};
     m->length = a->samples + 2 * m->taps;
     centres_place(m, &track);
@@ -182,9 +185,8 @@ static enum status monostatic_forecast(const struct problem *problem, const void
     if (status != STATUS_OK)
         return status;
     const struct monostatic *m = plan;
-    *forecast = (struct forecast){.error[CAUSE_DELAYS] = m->left,
-                                  .migration[MIGRATION_RECORDS] = m->work.flops,
-                                  .migration_flops = m->work.flops};
+    *forecast = (struct forecast){
+        .error[CAUSE_DELAYS] = m->left, .migration[MIGRATION_BLOCKS] = m->work.flops, .migration_flops = m->work.flops};
     monostatic_destroy(plan);
     return STATUS_OK;
 }

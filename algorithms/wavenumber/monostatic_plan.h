@@ -22,6 +22,7 @@
 #ifndef SASBENCH_WAVENUMBER_MONOSTATIC_PLAN_H
 #define SASBENCH_WAVENUMBER_MONOSTATIC_PLAN_H
 
+#include "common/isa.h"
 #include "common/memory.h"
 #include "contract/algorithm.h"
 #include "contract/delay.h"
@@ -34,7 +35,8 @@ enum {
     MONOSTATIC_TERMS = 8,    /* at most */
     MONOSTATIC_ANGLES = 65,  /* of the table of U, even in angle */
     MONOSTATIC_RANGES = 9,   /* even in 1/range */
-    MONOSTATIC_STRIP = 8     /* samples whose transforms go side by side */
+    MONOSTATIC_STRIP = 8,    /* samples whose transforms go side by side */
+    MONOSTATIC_STRIPS = 3    /* of a thread: the echoes, a term of them, the sum of the terms */
 };
 
 /* A record: its place among its ping's, and transmitter, receiver and its velocity from its ping of the raster. */
@@ -42,6 +44,21 @@ struct centre {
     int place;
     struct vector tx, rx, velocity;
 };
+
+struct monostatic;
+
+/* ---- the loops of each instruction set (monostatic_lines.c) ---- */
+/* A compressed record, with its guards, to a record of the raster, by a row of the tables. */
+typedef void monostatic_record_function(const struct monostatic *m, int row, const void *record, void *converted);
+/* A strip of all pings times V of a term: [pings receivers][MONOSTATIC_STRIP]. */
+typedef void monostatic_vector_function(const struct monostatic *m, int term, const void *held, void *turned);
+/* U of a term times the strip's transforms, that begins at sample `first`, is added to `sum`:
+   [wavenumbers][MONOSTATIC_STRIP]. */
+typedef void monostatic_product_function(const struct monostatic *m, int term, int first, const void *transforms,
+                                         void *sum);
+ISA_DECLARE(monostatic_record_function, monostatic_record);
+ISA_DECLARE(monostatic_vector_function, monostatic_vector);
+ISA_DECLARE(monostatic_product_function, monostatic_product);
 
 struct monostatic {
     const struct acquisition *acquisition; /* the problem's */
@@ -56,7 +73,7 @@ struct monostatic {
     int *begins;                        /* [rows][samples]: of the taps in a compressed record */
     unsigned short *nodes;              /* [rows][samples]: their weights */
     void *turns;                        /* complex [rows][samples]: the phases; 0 where nothing is read */
-    void *weights;                      /* real [MONOSTATIC_NODES + 1][taps] */
+    void *weights;                      /* real [MONOSTATIC_NODES + 1][taps][2]: twice, for both parts of a value */
     void *scratch;                      /* complex [threads][length] */
     int terms;                          /* 0: what is left needs none */
     double angle_first, angle_step;     /* rad off broadside: of the table */
@@ -66,9 +83,12 @@ struct monostatic {
     int wavenumbers;                    /* length of the transforms along the raster */
     void *vectors;                      /* complex [terms][pings receivers]: V along the raster */
     void *products;                     /* complex [terms][MONOSTATIC_RANGES][wavenumbers]: U */
-    void *strips;                       /* complex [threads][2 MONOSTATIC_STRIP + 1][wavenumbers] */
+    void *strips;                       /* complex [threads][MONOSTATIC_STRIPS][wavenumbers][MONOSTATIC_STRIP] */
     void *forward, *inverse;
     struct traces *traces;
+    monostatic_record_function *record_loop;
+    monostatic_vector_function *vector_loop;
+    monostatic_product_function *product_loop;
     struct work work;
     struct store store;
 };

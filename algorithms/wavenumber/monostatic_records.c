@@ -1,11 +1,10 @@
-/* Tables and loops of the conversion (monostatic_plan.h). Compiled once for each precision. */
+/* Tables and stages of the conversion (monostatic_plan.h). Compiled once for each precision. */
 #include "wavenumber/monostatic_plan.h"
 
 #include <omp.h>
 #include <string.h>
 
 #include "backprojection/traces.h"
-#include "common/cubic.h"
 #include "common/fft.h"
 #include "common/fft_length.h"
 #include "range_migration/delay_compensation.h"
@@ -13,13 +12,13 @@
 static void weights_fill(struct monostatic *m)
 {
     struct delay_taps *taps = store_take(&m->store, 1, sizeof *taps, 1);
-    m->weights = store_take(&m->store, (size_t)(MONOSTATIC_NODES + 1) * (size_t)m->taps, sizeof(real), 1);
+    m->weights = store_take(&m->store, (size_t)(MONOSTATIC_NODES + 1) * (size_t)m->taps, 2 * sizeof(real), 1);
     m->store.failed = m->store.failed || delay_taps_make(m->acquisition, 1, m->taps, taps) != STATUS_OK;
     for (int i = 0; i <= MONOSTATIC_NODES && !m->store.failed; i++) {
         double weights[DELAY_TAPS], slopes[DELAY_TAPS];
         delay_taps_weights(taps, (double)i / MONOSTATIC_NODES, weights, slopes);
-        for (int k = 0; k < m->taps; k++)
-            ((real *)m->weights)[i * m->taps + k] = (real)weights[k];
+        for (int k = 0; k < 2 * m->taps; k++)
+            ((real *)m->weights)[2 * i * m->taps + k] = (real)weights[k / 2];
     }
 }
 
@@ -32,7 +31,7 @@ static void delays_fill(struct monostatic *m, int row_number, double t0)
         const double at = (tau - t0) * a->fs;
         if (!(at > -1 && at < a->samples)) /* nothing is recorded there */
             continue;
-        const double node = nearbyint((at - floor(at)) * MONOSTATIC_NODES);
+        const double node = floor((at - floor(at)) * MONOSTATIC_NODES + 0.5);
         m->begins[row + (size_t)n] = (int)floor(at) + 1 - m->taps / 2 + m->taps;
         m->nodes[row + (size_t)n] = (unsigned short)node;
         ((complex_real *)m->turns)[row + (size_t)n] = rotor(a->fc * (tau - t));
@@ -50,8 +49,8 @@ static void terms_fill(struct monostatic *m)
     const size_t length = (size_t)m->wavenumbers;
     m->vectors = store_take(&m->store, terms * pings, sizeof(complex_real), 1);
     m->products = store_take(&m->store, terms * MONOSTATIC_RANGES * length, sizeof(complex_real), 1);
-    m->strips = store_take(&m->store, (size_t)m->threads * (2 * MONOSTATIC_STRIP + 1) * length, sizeof(complex_real),
-                           1.0 / m->threads);
+    m->strips = store_take(&m->store, (size_t)m->threads * MONOSTATIC_STRIPS * MONOSTATIC_STRIP * length,
+                           sizeof(complex_real), 1.0 / m->threads);
     if (m->store.failed)
         return;
     m->forward = fft_strip(&m->store, m->wavenumbers, MONOSTATIC_STRIP, m->strips, m->strips, FFTW_FORWARD);
@@ -68,7 +67,7 @@ static void terms_fill(struct monostatic *m)
     for (int n = 0; n < m->terms * MONOSTATIC_RANGES; n++)
         for (size_t k = 0; k < length; k++) {
             const double cycles = (double)k / (double)length;
-            const double nu = (cycles + nearbyint(centroid - cycles)) / m->spacing;
+            const double nu = (cycles + floor(centroid - cycles + 0.5)) / m->spacing;
             ((complex_real *)m->products)[(size_t)n * length + k] =
                 (complex_real)(monostatic_value(m, n / MONOSTATIC_RANGES, n % MONOSTATIC_RANGES, nu) / (double)length);
         }
@@ -104,88 +103,36 @@ void REAL_NAME(monostatic_fill)(struct monostatic *m)
     m->work.bytes = m->store.bytes + shape.bytes;
 }
 
-/* Guards are zero, and the taps reach into them. */
-static void record_convert(const struct monostatic *m, int row_number, const real *record, real *restrict to)
-{
-    const int samples = m->acquisition->samples, taps = m->taps;
-    const size_t row = (size_t)row_number * (size_t)samples;
-    const real *turns = (const real *)m->turns + 2 * row;
-    for (int n = 0; n < samples; n++) {
-        const real *from = record + 2 * (size_t)m->begins[row + (size_t)n];
-        const real *weights = (const real *)m->weights + (size_t)m->nodes[row + (size_t)n] * (size_t)taps;
-        const real c = turns[2 * n], s = turns[2 * n + 1];
-        real re = 0, im = 0;
-#pragma omp simd reduction(+ : re, im)
-        for (int k = 0; k < taps; k++) {
-            re += weights[k] * from[2 * k];
-            im += weights[k] * from[2 * k + 1];
-        }
-        to[2 * n] = re * c - im * s;
-        to[2 * n + 1] = re * s + im * c;
-    }
-}
-
-/* acc += U times the transforms, at the range of each of the strip's samples. */
-static void products_add(const struct monostatic *m, int term, int first, int width, const complex_real *transforms,
-                         complex_real *restrict line, complex_real *restrict acc)
-{
-    const struct acquisition *a = m->acquisition;
-    const size_t length = (size_t)m->wavenumbers;
-    for (int w = 0; w < width; w++) {
-        double weights[4];
-        const double range = monostatic_range(m, m->squint, a->t0[0] + (first + w) / a->fs);
-        const double place = range > 0 ? (1 / range - m->inverse_first) / m->inverse_step : INFINITY;
-        const int from = cubic_weights(place, MONOSTATIC_RANGES, weights);
-        const real *u =
-            (const real *)((const complex_real *)m->products + (size_t)(term * MONOSTATIC_RANGES + from) * length);
-        const real w0 = (real)weights[0], w1 = (real)weights[1], w2 = (real)weights[2], w3 = (real)weights[3];
-        for (size_t k = 0; k < 2 * length; k++)
-            ((real *)line)[k] = w0 * u[k] + w1 * u[k + 2 * length] + w2 * u[k + 4 * length] + w3 * u[k + 6 * length];
-        for (size_t k = 0; k < length; k++) {
-            const real *t = (const real *)(transforms + k * MONOSTATIC_STRIP + w);
-            real *to = (real *)(acc + k * MONOSTATIC_STRIP + w);
-            const real re = ((real *)line)[2 * k], im = ((real *)line)[2 * k + 1];
-            to[0] += re * t[0] - im * t[1];
-            to[1] += re * t[1] + im * t[0];
-        }
-    }
-}
-
 /* Samples first to first + width of all pings of the raster. */
 static void strip_turn(const struct monostatic *m, int first, int width, complex_real *converted, complex_real *strips)
 {
-    const struct acquisition *a = m->acquisition;
-    const size_t pings = (size_t)a->pings * (size_t)a->receivers, length = (size_t)m->wavenumbers;
-    const size_t samples = (size_t)a->samples;
-    complex_real *strip = strips, *acc = strips + length * MONOSTATIC_STRIP, *line = acc + length * MONOSTATIC_STRIP;
-    memset(acc, 0, length * MONOSTATIC_STRIP * sizeof *acc);
-    for (int q = 0; q < m->terms; q++) {
-        const real *v = (const real *)((const complex_real *)m->vectors + (size_t)q * pings);
-        memset(strip, 0, length * MONOSTATIC_STRIP * sizeof *strip);
-        for (size_t n = 0; n < pings; n++) {
-            const real *from = (const real *)(converted + n * samples + first);
-            real *to = (real *)(strip + n * MONOSTATIC_STRIP);
-            for (int w = 0; w < width; w++) {
-                to[2 * w] = v[2 * n] * from[2 * w] - v[2 * n + 1] * from[2 * w + 1];
-                to[2 * w + 1] = v[2 * n] * from[2 * w + 1] + v[2 * n + 1] * from[2 * w];
-            }
-        }
-        FFTW(execute_dft)(m->forward, strip, strip);
-        products_add(m, q, first, width, strip, line, acc);
-    }
-    FFTW(execute_dft)(m->inverse, acc, acc);
+    const size_t pings = (size_t)m->acquisition->pings * (size_t)m->acquisition->receivers;
+    const size_t length = (size_t)m->wavenumbers, samples = (size_t)m->acquisition->samples;
+    const size_t room = length * MONOSTATIC_STRIP;
+    complex_real *held = strips, *term = held + room, *sum = term + room;
+    memset(strips, 0, MONOSTATIC_STRIPS * room * sizeof *strips);
     for (size_t n = 0; n < pings; n++)
-        memcpy(converted + n * samples + first, acc + n * MONOSTATIC_STRIP, (size_t)width * sizeof *acc);
+        memcpy(held + n * MONOSTATIC_STRIP, converted + n * samples + first, (size_t)width * sizeof *held);
+    for (int q = 0; q < m->terms; q++) {
+        m->vector_loop(m, q, held, term);
+        memset(term + pings * MONOSTATIC_STRIP, 0, (length - pings) * MONOSTATIC_STRIP * sizeof *term);
+        FFTW(execute_dft)(m->forward, term, term);
+        m->product_loop(m, q, first, term, sum);
+    }
+    FFTW(execute_dft)(m->inverse, sum, sum);
+    for (size_t n = 0; n < pings; n++)
+        memcpy(converted + n * samples + first, sum + n * MONOSTATIC_STRIP, (size_t)width * sizeof *sum);
 }
 
 static void terms_apply(const struct monostatic *m, complex_real *converted)
 {
     const int samples = m->acquisition->samples;
-    const size_t room = (2 * MONOSTATIC_STRIP + 1) * (size_t)m->wavenumbers;
+    const size_t room = MONOSTATIC_STRIPS * MONOSTATIC_STRIP * (size_t)m->wavenumbers;
 #pragma omp parallel for schedule(static) num_threads(m->threads)
     for (int first = 0; first < samples; first += MONOSTATIC_STRIP) {
         const int width = samples - first < MONOSTATIC_STRIP ? samples - first : MONOSTATIC_STRIP;
-        strip_turn(m, first, width, converted, (complex_real *)m->strips + (size_t)omp_get_thread_num() * room);
+        complex_real *strips = (complex_real *)m->strips + (size_t)omp_get_thread_num() * room;
+        strip_turn(m, first, width, converted, strips);
     }
 }
 
@@ -201,7 +148,7 @@ void REAL_NAME(monostatic_convert)(const struct monostatic *m, const void *sampl
         const size_t to = (ping * receivers + (size_t)m->centres[row].place) * count;
         REAL_NAME(traces).fill(m->traces, omp_get_thread_num(), (const complex_real *)samples + (size_t)n * count,
                                record);
-        record_convert(m, row, (const real *)record, (real *)((complex_real *)converted + to));
+        m->record_loop(m, row, record, (complex_real *)converted + to);
     }
     if (m->terms > 0)
         terms_apply(m, converted);

@@ -10,6 +10,7 @@
 #include "echoes/echo_data.h"
 #include "scene/simulate.h"
 #include "show/table.h"
+#include "text/text_append.h"
 
 const char *const plan_verdict_names[] = {[CANDIDATE_CHOSEN] = "chosen",
                                           [CANDIDATE_SLOWER] = "slower",
@@ -257,14 +258,15 @@ void planned_answer(FILE *stream, const struct planned *planned, const char *sou
     const int chosen = planned_precision(planned), precision = chosen >= 0 ? chosen : PRECISION_DOUBLE;
     const struct choice *choice = &planned->choices[precision];
     const struct candidate *best = &choice->list[0], *last[FAMILIES_SHOWN];
-    char spec[CANDIDATE_NAME + 40], text[300];
+    char spec[CANDIDATE_NAME + 40], text[300], word[CANDIDATE_NAME + 60] = "";
     int shown = 0;
     if (choice->found) {
         spec_format(best, precision, spec, sizeof spec);
         snprintf(text, sizeof text, "%s: predicted error %.1e, %s, %s of memory", spec, best->error,
                  cell_time(best->seconds).text, cell_significant(1e-6 * best->bytes, " MB").text);
         table_text(stream, 0, text);
-        fprintf(stream, "  %s image %s -a %s -o image.mat\n", program_called(), source, spec);
+        text_append_word(word, sizeof word, spec);
+        fprintf(stream, "  %s image %s -a %s -o image.mat\n", program_called(), source, word);
     } else {
         fprintf(stream, "Nothing is within an error of %.2g.\n", planned->budget.error);
     }

@@ -311,7 +311,8 @@ static enum status chain_forecast_by(bool errors, const struct problem *problem,
         status = algorithm_forecast(filter->algorithm, &own, filter->options, &added);
         for (int cause = 0; cause < CAUSES; cause++)
             forecast->error[cause] = hypot(forecast->error[cause], added.error[cause]);
-        forecast->migration[MIGRATION_RECORDS] += added.migration[MIGRATION_RECORDS];
+        for (int stage = 0; stage < MIGRATIONS; stage++)
+            forecast->migration[stage] += added.migration[stage];
         forecast->migration_flops += added.migration_flops;
     }
     chain_destroy(plan);

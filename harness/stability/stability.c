@@ -16,9 +16,10 @@
 #include "show/plot.h"
 #include "stability/stability_table.h"
 
-/* In addition to every default algorithm: the plain paths, and the engine that is not chosen for small images. */
+/* In addition to every default algorithm: the plain paths, the engine that is not chosen for small images, and motion
+   compensation. */
 static const char *const settings[] = {"bp_nearest:exact=true", "bp_nearest:engine=invariant",
-                                       "bp_sinc:window=kaiser,exact=true"};
+                                       "bp_sinc:window=kaiser,exact=true", "monostatic | rma_delay"};
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
 /* One of each family: geometry, coordinates, speed, phase, band, sampling, ties, ends, amplitude, cancellation,
@@ -181,7 +182,7 @@ static enum status specs_choose(const struct stability_request *request, struct 
             continue;
         }
         struct spec spec;
-        status = spec_parse(k < all ? algorithms[k]->name : settings[k - all], &spec);
+        status = spec_own(k < all ? algorithms[k]->name : settings[k - all], &spec);
         if (status == STATUS_OK)
             status = spec_take(run, &spec, false);
         spec_free(&spec);

@@ -103,12 +103,12 @@ static void spec_make(const char *name, const char *settings, struct spec *spec)
         fail_msg("%s", status_message());
 }
 
-static void sweep_make(struct sweep *sweep)
+static void sweep_make(const struct scene *scene, struct sweep *sweep)
 {
     static struct candidate candidates[CANDIDATES_MAX];
     *sweep = (struct sweep){.list = calloc(SETTINGS_MOST, sizeof *sweep->list)};
     assert_non_null(sweep->list);
-    const int count = candidates_fill(problem.acquisition, candidates);
+    const int count = candidates_fill(&scene->acquisition, candidates);
     for (int k = 0; k < count; k++) {
         struct spec spec;
         spec_make(candidates[k].algorithm->name, candidates[k].settings, &spec);
@@ -290,7 +290,7 @@ static void scene_compare(const struct scene *scene, const char *name, bool time
     struct session session;
     struct sweep sweep;
     struct comparison comparisons[BUDGETS];
-    sweep_make(&sweep);
+    sweep_make(scene, &sweep);
     assert_int_equal(session_open(scene, &session), STATUS_OK);
     if (support_peak(&session.reference) == 0) { /* no record meets an echo: errors are not defined */
         print_message("%s: all pixels are zero\n", name);
