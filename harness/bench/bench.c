@@ -193,7 +193,7 @@ static enum status line_read(const struct csv *csv, int row, struct bench_line *
         return cell_refuse(csv, row, THREADS, "1, all");
     if (!csv_number(csv_cell(csv, row, PAIR_FLOPS), &line->pair_flops))
         return cell_refuse(csv, row, PAIR_FLOPS, "a number");
-    return spec_parse(csv_cell(csv, row, ALGORITHM), &line->spec);
+    return spec_own(csv_cell(csv, row, ALGORITHM), &line->spec);
 }
 
 /* ---- goals ---- */
