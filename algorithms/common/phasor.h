@@ -65,10 +65,19 @@ static inline void phasor_eighth(real x, real *c, real *s)
 #define PHASOR_COSINE(z, z2)                                                                                           \
     ((1.41421350f + z * -6.97885099f) + z2 * (5.73946117f + z * -1.88356299f + z2 * 0.310698194f))
 #endif
-/* For float, two thirds of the instructions: within 1.8e-6 (measured over all f), -115 dB. */
+/* Fewer instructions: within 1.8e-6 in float, -115 dB, and 1.6e-12 in double (measured over all f). */
+#if REAL_DOUBLE
+#define PHASOR_SHORT_SINE(z, z2)                                                                                       \
+    ((4.442882938158143 + z * -7.308249499907919) + z2 * (3.606476565863208 + z * -0.8474878900512266)                 \
+     + z2 * z2 * ((0.11617028371204188 + z * -0.010414279993637952) + z2 * 0.0006328541337402164))
+#define PHASOR_SHORT_COSINE(z, z2)                                                                                     \
+    ((1.4142135623720344 + z * -6.978864199222709) + z2 * (5.739885708283952 + z * -1.888346076193759)                 \
+     + z2 * z2 * ((0.3328004288140694 + z * -0.03645323340581796) + z2 * 0.0026021608329079592))
+#else
 #define PHASOR_SHORT_SINE(z, z2) (4.44285705f + z * (-7.30718432f + z * (3.59301926f + z * -0.780718886f)))
 #define PHASOR_SHORT_COSINE(z, z2)                                                                                     \
     (1.41422033f + z * (-6.97910828f + z * (5.74248479f + z * (-1.89762169f + z * 0.33330754f))))
+#endif
 #define PHASOR(name, type, SINE, COSINE)                                                                               \
     static inline __attribute__((always_inline)) void name(type f, type *c, type *s)                                   \
     {                                                                                                                  \

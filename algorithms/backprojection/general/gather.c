@@ -56,7 +56,7 @@ typedef float bits __attribute__((may_alias));
 typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 
 PHASOR(phasor_vector, vector_real, PHASOR_SINE, PHASOR_COSINE)
-#if WINDOWS
+#if WINDOWS || REAL_DOUBLE
 PHASOR(phasor_short, vector_real, PHASOR_SHORT_SINE, PHASOR_SHORT_COSINE)
 #endif
 
@@ -197,8 +197,8 @@ INLINE void take(struct taking taking, struct record record, size_t apart, const
 {
     const real *row = record.values;
     vector_real c, s, x, y;
-#if WINDOWS
-    if (taking.loading != APART)
+#if WINDOWS || REAL_DOUBLE
+    if (REAL_DOUBLE || taking.loading != APART)
         phasor_short(*at(run->cycles + i), &c, &s);
     else
 #endif
