@@ -1,4 +1,5 @@
-/* Loops of the conversion (monostatic_plan.h). Compiled once for each precision and instruction set (BP_ISA names it). */
+/* Loops of the conversion (monostatic_plan.h). Compiled once for each precision and instruction set (BP_ISA names
+   it). */
 #include "common/cubic.h"
 #include "common/real.h"
 #include "wavenumber/monostatic_plan.h"
