@@ -154,8 +154,9 @@ void check_print(FILE *stream, const struct scene *scene, const struct check_fou
     snprintf(text, sizeof text, "%.300s: %d of %d algorithm%s this scene; %d warning%s", scene->name,
              specs - found->refused, specs, specs == 1 ? " takes" : "s take", warnings, warnings == 1 ? "" : "s");
     table_text(stream, 0, text);
-    for (const char *line = found->unplanned; *line; line += strcspn(line, "\n") + 1) {
-        snprintf(text, sizeof text, "REFUSED  %.*s", (int)strcspn(line, "\n"), line);
+    for (const char *line = found->unplanned, *end; *line; line = *end ? end + 1 : end) { /* the last may be cut */
+        end = line + strcspn(line, "\n");
+        snprintf(text, sizeof text, "REFUSED  %.*s", (int)(end - line), line);
         table_text(stream, 2, text);
     }
     for (int v = 0; v < shown; v++)
