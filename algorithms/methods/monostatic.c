@@ -122,6 +122,7 @@ static enum status monostatic_plan(const struct problem *problem, const void *me
                              .straight = straight,
                              .rows = rows,
                              .threads = omp_get_max_threads(),
+                             .delays_loop = ISA_CHOOSE(monostatic_delays, problem->precision),
                              .record_loop = ISA_CHOOSE(monostatic_record, problem->precision),
                              .vector_loop = ISA_CHOOSE(monostatic_vector, problem->precision),
                              .product_loop = ISA_CHOOSE(monostatic_product, problem->precision),

@@ -1,11 +1,47 @@
 /* Loops of the conversion (monostatic_plan.h). Compiled once for each precision and instruction set (BP_ISA names
    it). */
 #include "common/cubic.h"
+#include "common/phasor.h"
 #include "common/real.h"
 #include "wavenumber/monostatic_plan.h"
 
 enum { LANES = 8 }; /* real and imaginary parts of LANES/2 values: taps come by fours */
 typedef real vec __attribute__((vector_size(LANES * sizeof(real)), aligned(sizeof(real))));
+
+void REAL_ISA_NAME(monostatic_delays)(const struct monostatic *m, int row_number)
+{
+    enum { SPAN = 64 };
+    const struct acquisition *a = m->acquisition;
+    const struct centre centre = m->centres[row_number];
+    const double t0 = a->t0[m->straight ? 0 : row_number / a->receivers];
+    const size_t row = (size_t)row_number * (size_t)a->samples;
+    int *begins = m->begins + row;
+    unsigned short *nodes = m->nodes + row;
+    real *turns = (real *)m->turns + 2 * row;
+    for (int first = 0; first < a->samples; first += SPAN) {
+        const int count = a->samples - first < SPAN ? a->samples - first : SPAN;
+        double at[SPAN];
+        real cycles[SPAN], c[SPAN], s[SPAN];
+        for (int i = 0; i < count; i++) {
+            const double t = a->t0[0] + (first + i) / a->fs, tau = monostatic_delay(m, &centre, t);
+            const double turned = a->fc * (tau - t);
+            at[i] = (tau - t0) * a->fs;
+            cycles[i] = (real)(turned - floor(turned + 0.5));
+        }
+#pragma omp simd
+        for (int i = 0; i < count; i++)
+            phasor(cycles[i], &c[i], &s[i]);
+        for (int i = 0; i < count; i++) {
+            if (!(at[i] > -1 && at[i] < a->samples)) /* nothing is recorded there */
+                continue;
+            const double whole = floor(at[i]);
+            begins[first + i] = (int)whole + 1 - m->taps / 2 + m->taps;
+            nodes[first + i] = (unsigned short)floor((at[i] - whole) * MONOSTATIC_NODES + 0.5);
+            turns[2 * (first + i)] = c[i];
+            turns[2 * (first + i) + 1] = s[i];
+        }
+    }
+}
 
 /* Guards are zero, and the taps reach into them. */
 void REAL_ISA_NAME(monostatic_record)(const struct monostatic *m, int row_number, const void *record, void *converted)

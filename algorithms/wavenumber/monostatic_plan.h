@@ -48,6 +48,8 @@ struct centre {
 struct monostatic;
 
 /* ---- the loops of each instruction set (monostatic_lines.c) ---- */
+/* Fill a row of `begins`, `nodes` and `turns`. */
+typedef void monostatic_delays_function(const struct monostatic *m, int row);
 /* A compressed record, with its guards, to a record of the raster, by a row of the tables. */
 typedef void monostatic_record_function(const struct monostatic *m, int row, const void *record, void *converted);
 /* A strip of all pings times V of a term: [pings receivers][MONOSTATIC_STRIP]. */
@@ -56,6 +58,7 @@ typedef void monostatic_vector_function(const struct monostatic *m, int term, co
    [wavenumbers][MONOSTATIC_STRIP]. */
 typedef void monostatic_product_function(const struct monostatic *m, int term, int first, const void *transforms,
                                          void *sum);
+ISA_DECLARE(monostatic_delays_function, monostatic_delays);
 ISA_DECLARE(monostatic_record_function, monostatic_record);
 ISA_DECLARE(monostatic_vector_function, monostatic_vector);
 ISA_DECLARE(monostatic_product_function, monostatic_product);
@@ -86,6 +89,7 @@ struct monostatic {
     void *strips;                       /* complex [threads][MONOSTATIC_STRIPS][wavenumbers][MONOSTATIC_STRIP] */
     void *forward, *inverse;
     struct traces *traces;
+    monostatic_delays_function *delays_loop;
     monostatic_record_function *record_loop;
     monostatic_vector_function *vector_loop;
     monostatic_product_function *product_loop;

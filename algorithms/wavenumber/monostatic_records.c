@@ -22,22 +22,6 @@ static void weights_fill(struct monostatic *m)
     }
 }
 
-static void delays_fill(struct monostatic *m, int row_number, double t0)
-{
-    const struct acquisition *a = m->acquisition;
-    const size_t row = (size_t)row_number * (size_t)a->samples;
-    for (int n = 0; n < a->samples; n++) {
-        const double t = a->t0[0] + n / a->fs, tau = monostatic_delay(m, &m->centres[row_number], t);
-        const double at = (tau - t0) * a->fs;
-        if (!(at > -1 && at < a->samples)) /* nothing is recorded there */
-            continue;
-        const double node = floor((at - floor(at)) * MONOSTATIC_NODES + 0.5);
-        m->begins[row + (size_t)n] = (int)floor(at) + 1 - m->taps / 2 + m->taps;
-        m->nodes[row + (size_t)n] = (unsigned short)node;
-        ((complex_real *)m->turns)[row + (size_t)n] = rotor(a->fc * (tau - t));
-    }
-}
-
 /* The terms along the raster and its wavenumbers, these unfolded about that of the beam's axis. */
 static void terms_fill(struct monostatic *m)
 {
@@ -94,7 +78,7 @@ void REAL_NAME(monostatic_fill)(struct monostatic *m)
         return;
 #pragma omp parallel for schedule(static) num_threads(m->threads)
     for (int row = 0; row < m->rows; row++)
-        delays_fill(m, row, a->t0[m->straight ? 0 : row / a->receivers]);
+        m->delays_loop(m, row);
     m->work.flops = records * (shape.flops + a->samples * (4.0 * m->taps + 6));
     if (m->terms > 0)
         m->work.flops += a->samples

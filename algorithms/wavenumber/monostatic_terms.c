@@ -3,14 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/common_divisor.h"
 #include "common/cubic.h"
 #include "wavenumber/monostatic_plan.h"
 
 enum {
     EVERY = 4, /* of the table's angles and ranges is used to find the terms */
     SAMPLES = ((MONOSTATIC_ANGLES - 1) / EVERY + 1) * ((MONOSTATIC_RANGES - 1) / EVERY + 1),
-    RECORDS = 1024, /* at most so many of them, spread over all, stand for them */
-    ROUNDS = 40     /* of the subspace iteration */
+    RECORDS = 256, /* at most so many of them, spread over all, stand for them */
+    ROUNDS = 40    /* of the subspace iteration */
 };
 static const double WIDEST = 1.4;      /* rad */
 static const double EDGE_ZONES = 3;    /* of Fresnel's */
@@ -290,7 +291,8 @@ static void terms_find(struct monostatic *m, struct finding *f)
     const int most = MONOSTATIC_TERMS;
     double left[MONOSTATIC_TERMS + 1];
     f->step = (m->rows - 1) / RECORDS + 1;
-    f->step += m->rows > RECORDS && f->step % 2 == 0; /* even steps might miss every other receiver */
+    while (f->step > 1 && common_divisor(f->step, m->acquisition->receivers) > 1) /* it would miss receivers */
+        f->step++;
     f->records = (m->rows - 1) / f->step + 1;
     matrix_fill(m, f);
     principal((const double complex(*)[SAMPLES])f->matrix, most, f->vectors);

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "backprojection/pairs/turned.h"
+#include "common/common_divisor.h"
 
 static const double GOLDEN = 0.618; /* section */
 
@@ -54,16 +55,6 @@ static bool record_holds(const struct acquisition *a, int ping, struct delay_bou
     const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs;
     const double slack = 1e-3 / a->fs + 1e-9 * fabs(last);
     return delays.least > first + slack && delays.most < last - slack;
-}
-
-static int common_divisor(int a, int b)
-{
-    while (b > 0) {
-        const int rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a;
 }
 
 /* A step through `count` lines, by the golden section, that visits each line once, and soon comes near any. */
