@@ -75,3 +75,13 @@ double fft_flops(double n)
 {
     return 5 * n * log2(n);
 }
+
+int common_divisor(int a, int b)
+{
+    while (b > 0) {
+        const int rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}

@@ -19,4 +19,7 @@ double fft_slowness(int n);
 /* FLOPs of one complex transform, 5 n log2 n: the count that both papers and FFTW's own benchmark use. */
 double fft_flops(double n);
 
+/* The greatest common divisor of a >= 1 and b >= 0. */
+int common_divisor(int a, int b);
+
 #endif

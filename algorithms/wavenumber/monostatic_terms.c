@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/common_divisor.h"
 #include "common/cubic.h"
+#include "common/fft_length.h"
 #include "wavenumber/monostatic_plan.h"
 
 enum {

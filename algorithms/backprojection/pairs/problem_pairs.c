@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "backprojection/pairs/turned.h"
-#include "common/common_divisor.h"
+#include "common/fft_length.h"
 
 static const double GOLDEN = 0.618; /* section */
 
