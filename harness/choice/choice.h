@@ -22,6 +22,7 @@ struct candidate {
     double error;                /* relative L2: measured, or else by law; INFINITY without either */
     struct probe_error measured; /* `pixels` is 0 where it was not */
     double seconds;              /* of a run; INFINITY where unknown; of bp_factorised without a forecast a bound */
+    double count_s;              /* s: about what it takes to count it */
     double flops, pairs;         /* counted; NAN where unknown */
     double bytes;                /* of the process (process.h); NAN where no plan was made */
     enum candidacy verdict;

@@ -20,8 +20,9 @@ static const double LIMIT_PAYS = 0.95;
 static const double BUDGETED = 0.9;
 /* Of the budget, the error by law that the stand-in for the exact image may have. */
 static const double EXACT = 0.1;
-/* s: the time to count images of subapertures, and all range migrations. */
-static const double COUNT_IMAGES = 0.05, COUNT_MIGRATIONS = 0.005;
+/* s: the time to count images of subapertures, and all range migrations; a filter, and each recorded value that it
+   reads. A candidate is counted where the fastest takes longer. */
+static const double COUNT_IMAGES = 0.05, COUNT_MIGRATIONS = 0.005, COUNT_FILTER = 0.1, COUNT_VALUE = 1.2e-7;
 
 enum status laws_refused(struct candidate *candidate, enum status status)
 {
@@ -105,12 +106,6 @@ bool laws_counted(const struct candidate *candidate)
     return candidate->verdict != CANDIDATE_SLOWER || !isnan(candidate->flops);
 }
 
-/* The least time of the fastest that makes counting another worthwhile. */
-static double count_time(const struct candidate *candidate)
-{
-    return candidate->budgeted ? COUNT_IMAGES : laws_sums(candidate) ? 0 : COUNT_MIGRATIONS;
-}
-
 struct candidate *laws_next(struct choice *choice)
 {
     struct candidate *best = NULL, *more = NULL;
@@ -119,12 +114,12 @@ struct candidate *laws_next(struct choice *choice)
         const bool waits = k > 0 && c[-1].family == c->family && c[-1].verdict == CANDIDATE_SLOWER;
         if (c->verdict != CANDIDATE_SLOWER || waits)
             continue;
-        if (!laws_counted(c) && (!more || count_time(c) < count_time(more)))
+        if (!laws_counted(c) && (!more || c->count_s < more->count_s))
             more = c;
         if (laws_counted(c) && (!best || c->seconds < best->seconds))
             best = c;
     }
-    const bool pays = more && best && best->seconds > fmax(count_time(more), more->seconds)
+    const bool pays = more && best && best->seconds > fmax(more->count_s, more->seconds)
                       && (best->forecast.sums_pairs || !more->budgeted);
     return best && !pays ? best : more;
 }
@@ -227,6 +222,14 @@ enum status laws_complete(const struct setting *setting, struct candidate *c)
     return laws_refused(c, status);
 }
 
+static double count_time(const struct setting *setting, const struct candidate *c)
+{
+    const struct acquisition *a = setting->problem->acquisition;
+    if (c->algorithm->traits & TRAIT_FILTERED)
+        return COUNT_FILTER + COUNT_VALUE * a->pings * a->receivers * a->samples;
+    return c->budgeted ? COUNT_IMAGES : laws_sums(c) ? 0 : COUNT_MIGRATIONS;
+}
+
 enum status laws_fill(struct setting *setting, struct choice *choice)
 {
     const int all = candidates_fill(setting->problem->acquisition, choice->list);
@@ -248,6 +251,7 @@ enum status laws_fill(struct setting *setting, struct choice *choice)
         c->verdict = CANDIDATE_SLOWER;
         c->error = INFINITY;
         c->seconds = 0;
+        c->count_s = count_time(setting, c);
         c->flops = c->pairs = c->bytes = NAN;
         if (k == 0)
             status = laws_count(setting, c);
