@@ -185,9 +185,7 @@ static enum status monostatic_forecast(const struct problem *problem, const void
     const enum status status = monostatic_plan(problem, method, options, &plan);
     if (status != STATUS_OK)
         return status;
-    const struct monostatic *m = plan;
-    *forecast = (struct forecast){
-        .error[CAUSE_DELAYS] = m->left, .migration[MIGRATION_BLOCKS] = m->work.flops, .migration_flops = m->work.flops};
+    *forecast = (struct forecast){.error[CAUSE_DELAYS] = ((const struct monostatic *)plan)->left};
     monostatic_destroy(plan);
     return STATUS_OK;
 }
