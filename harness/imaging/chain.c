@@ -294,19 +294,7 @@ static int chain_conditions(const struct problem *problem, const void *method, c
     return count;
 }
 
-/* Errors' squares add up. */
-static enum status filter_error_add(const struct chain_plan *plan, int k, struct forecast *forecast)
-{
-    const struct spec *filter = &plan->chain->filters[k];
-    const struct problem problem = problem_at(plan, k);
-    struct forecast own;
-    const enum status status = algorithm_forecast(filter->algorithm, &problem, filter->options, &own);
-    for (int cause = 0; cause < CAUSES && status == STATUS_OK; cause++)
-        forecast->error[cause] = hypot(forecast->error[cause], own.error[cause]);
-    return status;
-}
-
-/* That of the last link, of the filtered recording, and of each filter. */
+/* That of the last link, of the filtered recording, and of each filter: errors' squares and counts add up. */
 static enum status chain_forecast_by(bool errors, const struct problem *problem, const struct chain *chain,
                                      const void *options, struct forecast *forecast)
 {
@@ -317,11 +305,16 @@ static enum status chain_forecast_by(bool errors, const struct problem *problem,
         status = (errors ? algorithm_forecast : algorithm_cost)(chain->last, &last, options, forecast);
     }
     for (int k = 0; k < chain->count && status == STATUS_OK; k++) {
-        const double flops = chain->filters[k].algorithm->work(plan->links[k].plan).flops;
+        const struct spec *filter = &chain->filters[k];
+        const double flops = filter->algorithm->work(plan->links[k].plan).flops;
+        const struct problem own = problem_at(plan, k);
+        struct forecast added = {.error = {0}};
         forecast->migration[MIGRATION_BLOCKS] += flops;
         forecast->migration_flops += flops;
         if (errors)
-            status = filter_error_add(plan, k, forecast);
+            status = algorithm_forecast(filter->algorithm, &own, filter->options, &added);
+        for (int cause = 0; cause < CAUSES; cause++)
+            forecast->error[cause] = hypot(forecast->error[cause], added.error[cause]);
     }
     chain_destroy(plan);
     return status;
