@@ -1,5 +1,6 @@
 /* Any program as an algorithm: it loses its own row, whatever it does, and leaves no process and no file behind. */
 #define _GNU_SOURCE /* asprintf */
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,24 +74,28 @@ static void faults_lose_their_row(void **state)
     assert_nothing_left();
 }
 
-/* More processors than threads, as soon as it gets them: others may have them. */
+/* More processors than threads, if it gets them for every image: others may have them, and one image within the
+   threads is enough for the rule. */
 static void threads_are_counted(void **state)
 {
     (void)state;
     for (int attempt = 0; attempt < 4 && sysconf(_SC_NPROCESSORS_ONLN) > 1; attempt++) {
         struct csv csv;
-        assert_shell("rm -rf crowd", 0);
+        assert_shell("rm -rf crowd processors", 0);
         specs_run("--threads 1", "-a 'external:python3 bad.py threads'", "crowd");
         char *processors = support_read("processors");
         assert_non_null(processors);
-        const double had = atof(processors);
+        double least = INFINITY;
+        char *rest = processors;
+        for (const char *word = strsep(&rest, " "); word && *word; word = strsep(&rest, " "))
+            least = fmin(least, atof(word));
         free(processors);
         assert_int_equal(csv_read(path_in("crowd/measurements.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
         const bool failed = strcmp(csv_cell(&csv, 0, csv_column(&csv, "status")), "failed") == 0;
         if (failed)
             assert_non_null(strstr(csv_cell(&csv, 0, csv_column(&csv, "reason")), "processors busy with --threads 1"));
         csv_free(&csv);
-        assert_true(failed || had < 1.5);
+        assert_true(failed || least < 1.5);
         if (failed)
             return;
     }
