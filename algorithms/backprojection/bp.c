@@ -141,8 +141,8 @@ int bp_method_conditions(const struct problem *problem, const void *method, cons
     return count;
 }
 
-static enum status forecast_work(const struct problem *problem, const struct interpolator *in,
-                                 const struct bp_options *options, struct forecast *forecast);
+static enum status forecast_work(const struct bp *bp, const struct interpolator *in, const struct bp_options *options,
+                                 struct forecast *forecast);
 
 static enum status choose_engine(struct bp *bp, const struct interpolator *in, const struct bp_options *options)
 {
@@ -153,7 +153,7 @@ static enum status choose_engine(struct bp *bp, const struct interpolator *in, c
         return status_set(STATUS_UNSUPPORTED, "engine=invariant: %s", status_message());
     if (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK) {
         struct forecast forecast;
-        status = forecast_work(&bp->problem, in, options, &forecast);
+        status = forecast_work(bp, in, options, &forecast);
         if (status != STATUS_OK)
             return status;
         bp->engine = forecast.tables ? &bp_invariant : &bp_general;
@@ -277,17 +277,13 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
     return made ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-/* Choose the engine and the records read, without a plan. The caller frees `tables` and `turned` of *bp. */
-static enum status forecast_begin(const struct problem *problem, const struct interpolator *in,
-                                  const struct bp_options *options, struct bp *bp)
+/* What engines share, without a plan. The caller frees `tables` and `turned` of *bp. */
+static enum status forecast_begin(const struct problem *problem, const struct bp_options *options, struct bp *bp)
 {
     const struct acquisition *a = problem->acquisition;
     *bp = (struct bp){.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, 0, a->samples - 1, 0}};
-    bp->table = table_of(in);
     aperture_take(bp, options);
-    enum status status = problem_turn_back(&bp->problem, &bp->turned, NULL);
-    if (status == STATUS_OK)
-        status = choose_engine(bp, in, options);
+    const enum status status = problem_turn_back(&bp->problem, &bp->turned, NULL);
     return status == STATUS_OK ? bp_met_find(bp) : status;
 }
 
@@ -316,13 +312,13 @@ static double error_between_samples(const struct problem *problem, const struct 
                                                                                : NAN;
 }
 
-/* The forecast by the engine of the options, which is not auto. */
-static enum status forecast_engine(const struct problem *problem, const struct interpolator *in,
+/* The forecast of what is begun, by the engine of the options, which is not auto. */
+static enum status forecast_engine(const struct bp *begun, const struct interpolator *in,
                                    const struct bp_options *options, struct forecast *forecast)
 {
-    struct bp bp;
+    struct bp bp = {.problem = begun->problem, .medium = begun->medium, .table = table_of(in), .met = begun->met};
     *forecast = (struct forecast){.sums_pairs = true};
-    enum status status = forecast_begin(problem, in, options, &bp);
+    enum status status = choose_engine(&bp, in, options);
     if (status == STATUS_OK)
         status = forecast_reading(&bp, in, forecast);
     if (status == STATUS_OK) {
@@ -330,37 +326,34 @@ static enum status forecast_engine(const struct problem *problem, const struct i
         forecast->tables = !general;
         forecast->finer = in->upsample;
         forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
-        forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
-        if (bp.limited.aperture_limit > 0)
-            forecast->error[CAUSE_APERTURE] = aperture_planned(problem, options->aperture);
+        forecast->error[CAUSE_FLOAT] = ROUNDING[general][bp.problem.precision];
         if (forecast->kind == READ_BRANCHES && in->degree == 0)
             bp.kernel.branches = forecast->values;
         forecast_records(&bp, in, forecast);
     }
     store_release(&bp.tables);
-    turned_free(&bp.turned);
     return status;
 }
 
-/* The forecast without conditions and the error law, which takes most of the time. engine=auto takes the invariant
+/* The forecast without conditions and the error law. engine=auto takes the invariant
    engine, whose delays are more exact, unless the general one gains a tenth of the time or more: by the built-in rates,
    so that a setting makes the same image on every machine. */
-static enum status forecast_work(const struct problem *problem, const struct interpolator *in,
-                                 const struct bp_options *options, struct forecast *forecast)
+static enum status forecast_work(const struct bp *bp, const struct interpolator *in, const struct bp_options *options,
+                                 struct forecast *forecast)
 {
     if (options->engine != BP_ENGINE_AUTO)
-        return forecast_engine(problem, in, options, forecast);
+        return forecast_engine(bp, in, options, forecast);
     struct forecast invariant;
     struct bp_options fixed = *options;
     fixed.engine = BP_ENGINE_GENERAL;
-    enum status status = forecast_engine(problem, in, &fixed, forecast);
+    enum status status = forecast_engine(bp, in, &fixed, forecast);
     if (status != STATUS_OK || options->exact)
         return status;
     fixed.engine = BP_ENGINE_INVARIANT;
-    status = forecast_engine(problem, in, &fixed, &invariant);
+    status = forecast_engine(bp, in, &fixed, &invariant);
     if (status != STATUS_OK)
         return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
-    const enum precision precision = problem->precision;
+    const enum precision precision = bp->problem.precision;
     if (rates_sums(&rates_built_in, &invariant, precision, forecast->pairs)
         <= 1.1 * rates_sums(&rates_built_in, forecast, precision, forecast->pairs))
         *forecast = invariant;
@@ -371,21 +364,35 @@ static enum status forecast_cost(const struct problem *problem, const struct int
                                  const struct bp_options *options, struct forecast *forecast)
 {
     struct condition list[CONDITIONS_MAX];
-    const enum status status =
+    struct bp bp;
+    enum status status =
         conditions_check("back projection", list, bp_method_conditions(problem, NULL, options, list, CONDITIONS_MAX));
-    return status == STATUS_OK ? forecast_work(problem, in, options, forecast) : status;
+    if (status != STATUS_OK)
+        return status;
+    status = forecast_begin(problem, options, &bp);
+    if (status == STATUS_OK)
+        status = forecast_work(&bp, in, options, forecast);
+    if (status == STATUS_OK && bp.limited.aperture_limit > 0)
+        forecast->error[CAUSE_APERTURE] = aperture_planned(problem, options->aperture);
+    store_release(&bp.tables);
+    turned_free(&bp.turned);
+    return status;
+}
+
+static enum status forecast_errors(const struct problem *problem, const struct interpolator *in,
+                                   struct forecast *forecast)
+{
+    const double law = error_between_samples(problem, in);
+    const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
+    forecast->error[CAUSE_INTERPOLATION] = hypot(law, ends);
+    return isnan(law) ? status_set(STATUS_FAILED, "no memory for an error law") : STATUS_OK;
 }
 
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const struct bp_options *options,
                         struct forecast *forecast)
 {
     const enum status status = forecast_cost(problem, in, options, forecast);
-    if (status != STATUS_OK)
-        return status;
-    const double law = error_between_samples(problem, in);
-    const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
-    forecast->error[CAUSE_INTERPOLATION] = hypot(law, ends);
-    return isnan(law) ? status_set(STATUS_FAILED, "no memory for an error law") : STATUS_OK;
+    return status == STATUS_OK ? forecast_errors(problem, in, forecast) : status;
 }
 
 enum status bp_method_plan(const struct problem *problem, const void *given, const void *options, void **plan)
@@ -398,15 +405,6 @@ enum status bp_method_plan(const struct problem *problem, const void *given, con
                                : status;
 }
 
-enum status bp_method_forecast(const struct problem *problem, const void *given, const void *options,
-                               struct forecast *forecast)
-{
-    const struct bp_method *method = given;
-    struct interpolator interpolator;
-    const enum status status = method->make(problem, options, &interpolator);
-    return status == STATUS_OK ? bp_forecast(problem, &interpolator, options, forecast) : status;
-}
-
 enum status bp_method_cost(const struct problem *problem, const void *given, const void *options,
                            struct forecast *forecast)
 {
@@ -414,6 +412,15 @@ enum status bp_method_cost(const struct problem *problem, const void *given, con
     struct interpolator interpolator;
     const enum status status = method->make(problem, options, &interpolator);
     return status == STATUS_OK ? forecast_cost(problem, &interpolator, options, forecast) : status;
+}
+
+enum status bp_method_errors(const struct problem *problem, const void *given, const void *options,
+                             struct forecast *forecast)
+{
+    const struct bp_method *method = given;
+    struct interpolator interpolator;
+    const enum status status = method->make(problem, options, &interpolator);
+    return status == STATUS_OK ? forecast_errors(problem, &interpolator, forecast) : status;
 }
 
 void bp_destroy(void *plan)

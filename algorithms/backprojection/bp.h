@@ -67,13 +67,13 @@ struct bp_method {
 
 /* The callbacks of struct algorithm, whose `method` is a struct bp_method. */
 #define BP_CALLBACKS                                                                                                   \
-    .conditions = bp_method_conditions, .forecast = bp_method_forecast, .cost = bp_method_cost,                        \
-    .plan = bp_method_plan, .execute = bp_execute, .reads = bp_reads, .work = bp_work, .destroy = bp_destroy
+    .conditions = bp_method_conditions, .cost = bp_method_cost, .errors = bp_method_errors, .plan = bp_method_plan,    \
+    .execute = bp_execute, .reads = bp_reads, .work = bp_work, .destroy = bp_destroy
 enum status bp_method_plan(const struct problem *problem, const void *method, const void *options, void **plan);
-enum status bp_method_forecast(const struct problem *problem, const void *method, const void *options,
-                               struct forecast *forecast);
 enum status bp_method_cost(const struct problem *problem, const void *method, const void *options,
                            struct forecast *forecast);
+enum status bp_method_errors(const struct problem *problem, const void *method, const void *options,
+                             struct forecast *forecast);
 /* conditions_sampled and `invariance`, which refuses with engine=invariant. */
 int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                          int room);

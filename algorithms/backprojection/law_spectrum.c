@@ -21,28 +21,34 @@ static const double FLANKS = 0.01;
 static bool replica_spectrum(const struct acquisition *a, double cells, struct law_spectrum *spectrum)
 {
     const int length = fft_length_fast((long long)fmax(2.0 * a->pulse_length, FINER * BINS));
-    double *energy = pulse_energy(a, length), shown = 0, amplitudes = 0;
+    double *energy = pulse_energy(a, length), shown = 0, amplitudes = 0, places[BINS][2] = {{0}};
     if (!energy)
         return false;
-    for (int k = 0; k < length; k++) {
-        shown += energy[k] * image_gain(a, cells, pulse_bin_frequency(a, k, length));
-        amplitudes += sqrt(energy[k]);
-    }
     *spectrum = (struct law_spectrum){.count = BINS, .reach = BINS / 3.0};
     for (int k = 0; k < length; k++) {
-        const double nu = fmin(k, length - k) / (double)length, amplitude = sqrt(energy[k]) / amplitudes;
-        /* The energy of compressed white noise is in proportion to the echoes' amplitude. */
-        const double echo = (1 - a->noise) * energy[k] / shown, noise = a->noise * amplitude;
-        const double both = echo * image_gain(a, cells, pulse_bin_frequency(a, k, length)) + noise;
+        const double nu = fmin(k, length - k) / (double)length, amplitude = sqrt(energy[k]);
+        const double seen = energy[k] * image_gain(a, cells, pulse_bin_frequency(a, k, length));
         const int n = (int)fmin(2 * BINS * nu, BINS - 1);
-        spectrum->nu[n] += nu * both;
-        spectrum->weight[n] += both;
-        spectrum->scattered[n] += echo + noise;
+        shown += seen;
+        amplitudes += amplitude;
+        places[n][0] += nu * seen;
+        places[n][1] += nu * amplitude;
+        spectrum->weight[n] += seen;
+        spectrum->scattered[n] += energy[k];
         spectrum->amplitude[n][2 * k > length] += amplitude;
     }
     free(energy);
+    /* The energy of compressed white noise is in proportion to the echoes' amplitude. */
+    const double echo = (1 - a->noise) / shown, noise = a->noise / amplitudes;
     for (int n = 0; n < BINS; n++) {
-        spectrum->nu[n] = spectrum->weight[n] > 0 ? spectrum->nu[n] / spectrum->weight[n] : (n + 0.5) / (2 * BINS);
+        const double beside = noise * (spectrum->amplitude[n][0] + spectrum->amplitude[n][1]);
+        const double all = echo * spectrum->weight[n] + beside;
+        const double place = echo * places[n][0] + noise * places[n][1];
+        spectrum->weight[n] = all;
+        spectrum->nu[n] = all > 0 ? place / all : (n + 0.5) / (2 * BINS);
+        spectrum->scattered[n] = echo * spectrum->scattered[n] + beside;
+        for (int side = 0; side < 2; side++)
+            spectrum->amplitude[n][side] /= amplitudes;
     }
     return true;
 }

@@ -41,8 +41,10 @@ double *pulse_energy(const struct acquisition *a, int length)
     double magnitudes = 0; /* at least those of the spectrum: no power overflows */
     for (int k = 0; k < a->pulse_length; k++)
         magnitudes += cabs(a->pulse[k]);
-    for (int k = 0; energy && spectrum && k < length; k++)
-        energy[k] = pow(cabs(spectrum[k]) / magnitudes, 4);
+    for (int k = 0; energy && spectrum && k < length; k++) {
+        const double share = cabs(spectrum[k]) / magnitudes, power = share * share;
+        energy[k] = power * power;
+    }
     if (!energy || !spectrum) {
         status_set(STATUS_FAILED, "no memory for the replica's spectrum");
         free(energy);

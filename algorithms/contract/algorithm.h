@@ -173,7 +173,7 @@ struct algorithm {
     size_t options_size;  /* of the options struct; 0 without params */
     const struct param *params; /* NULL-terminated; NULL without options */
     const char *const *gated;   /* settings that the baseline measures beside the defaults; NULL-terminated, or NULL */
-    const struct candidate_family *candidates; /* with a forecast: what `auto` chooses among; NULL: nothing */
+    const struct candidate_family *candidates; /* with a `cost`: what `auto` chooses among; NULL: nothing */
     const void *method; /* its engine's description of it, passed to the callbacks; NULL: its callbacks are its own */
 
     /* Fill list[room] with the conditions of the whole problem, before any work, and return the number. `plan` refuses
@@ -183,15 +183,15 @@ struct algorithm {
                       int room);
     /* The promised relative L2 error of an image by these settings; a row with more warns. NAN, or NULL: no promise. */
     double (*promise)(const void *options);
-    /* Predict error and cost of the settings for a problem, without a plan; far cheaper than one, but for range
-       migration and filters. Errors: STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL:
-       no prediction, and no planner chooses the algorithm. */
-    enum status (*forecast)(const struct problem *problem, const void *method, const void *options,
-                            struct forecast *forecast);
-    /* The counts alone, where errors take longer; of the errors, those that cost nothing. Errors: as forecast, without
-       the reasons that only a forecast finds. NULL: `forecast` counts. */
+    /* Count the work of the settings for a problem, without a plan, into *forecast, and predict those errors that take
+       no longer. Errors: STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: no
+       prediction, and no planner chooses the algorithm. */
     enum status (*cost)(const struct problem *problem, const void *method, const void *options,
                         struct forecast *forecast);
+    /* Predict the other errors into the same forecast; a filter adds its own to those of what images its echoes.
+       Errors: as cost, with the reasons that it does not look for. NULL: there are none. */
+    enum status (*errors)(const struct problem *problem, const void *method, const void *options,
+                          struct forecast *forecast);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
     enum status (*plan)(const struct problem *problem, const void *method, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
@@ -213,21 +213,27 @@ extern const struct algorithm *const algorithms[];
 /* The same of filters, which only stand ahead of an algorithm. */
 extern const struct algorithm *const algorithm_filters[];
 
-/* Call its callbacks; without its own, costs are the forecast's and conditions the general ones. */
+/* Call its callbacks: conditions are the general ones without its own, and a forecast is cost and errors. */
 static inline enum status algorithm_plan(const struct algorithm *algorithm, const struct problem *problem,
                                          const void *options, void **plan)
 {
     return algorithm->plan(problem, algorithm->method, options, plan);
 }
-static inline enum status algorithm_forecast(const struct algorithm *algorithm, const struct problem *problem,
-                                             const void *options, struct forecast *forecast)
-{
-    return algorithm->forecast(problem, algorithm->method, options, forecast);
-}
 static inline enum status algorithm_cost(const struct algorithm *algorithm, const struct problem *problem,
                                          const void *options, struct forecast *forecast)
 {
-    return (algorithm->cost ? algorithm->cost : algorithm->forecast)(problem, algorithm->method, options, forecast);
+    return algorithm->cost(problem, algorithm->method, options, forecast);
+}
+static inline enum status algorithm_errors(const struct algorithm *algorithm, const struct problem *problem,
+                                           const void *options, struct forecast *forecast)
+{
+    return algorithm->errors ? algorithm->errors(problem, algorithm->method, options, forecast) : STATUS_OK;
+}
+static inline enum status algorithm_forecast(const struct algorithm *algorithm, const struct problem *problem,
+                                             const void *options, struct forecast *forecast)
+{
+    const enum status status = algorithm_cost(algorithm, problem, options, forecast);
+    return status == STATUS_OK ? algorithm_errors(algorithm, problem, options, forecast) : status;
 }
 int algorithm_conditions(const struct algorithm *algorithm, const struct problem *problem, const void *options,
                          struct condition *list, int room);

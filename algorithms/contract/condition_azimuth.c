@@ -5,34 +5,40 @@
 
 #include "contract/algorithm.h"
 
-/* Phase centre of a receiver along the track (m), with a `period` > 0 within one. */
-static double centre_of(const struct acquisition *a, int receiver, double period)
-{
-    const double place = condition_along(condition_axis(a), a->tx[0], a->rx[receiver]) / 2;
-    return period > 0 ? place - period * floor(place / period) : place;
-}
+enum { CENTRES_MOST = 64 };
 
-/* The first centre from a place on; INFINITY without one. */
-static double centre_next(const struct acquisition *a, double period, double from)
+/* The first phase centres, half the receivers' offsets along the track, from a place on (m), in their order; with a
+   `period` > 0 within one. Many at a time: an array may have thousands. */
+static int centres_next(const struct acquisition *a, double period, double from, double centres[CENTRES_MOST])
 {
-    double next = INFINITY;
+    const struct vector axis = condition_axis(a);
+    int count = 0;
     for (int m = 0; m < a->receivers; m++) {
-        const double place = centre_of(a, m, period);
-        next = place >= from && place < next ? place : next;
+        double place = condition_along(axis, a->tx[0], a->rx[m]) / 2;
+        place -= period > 0 ? period * floor(place / period) : 0;
+        if (!(place >= from) || (count == CENTRES_MOST && place >= centres[count - 1]))
+            continue;
+        int k = count < CENTRES_MOST ? count++ : count - 1;
+        for (; k > 0 && centres[k - 1] > place; k--)
+            centres[k] = centres[k - 1];
+        centres[k] = place;
     }
-    return next;
+    return count;
 }
 
-/* Phase centres, half the receivers' offsets, that lie `apart` m and more from each other along the track; rows and
-   arrays across it share places. With a `period` > 0 places come again after so many m, as from ping to ping. *extent
-   (m, may be NULL): from the first of those counted to the last. */
+/* Phase centres that lie `apart` m and more from each other along the track; rows and arrays across it share places.
+   With a `period` > 0 places come again after so many m, as from ping to ping. *extent (m, may be NULL): from the first
+   of those counted to the last. */
 static int centres_count(const struct acquisition *a, double period, double apart, double *extent)
 {
-    const double first = centre_next(a, period, -INFINITY);
-    double last = first;
-    int count = 1;
-    for (double next; isfinite(next = centre_next(a, period, last + apart)) && count < a->receivers; last = next)
-        count++;
+    double centres[CENTRES_MOST], first = 0, last = -INFINITY;
+    int count = 0;
+    for (int some; count < a->receivers && (some = centres_next(a, period, last + apart, centres)) > 0;)
+        for (int k = 0; k < some && count < a->receivers; k++)
+            if (centres[k] >= last + apart) {
+                last = centres[k];
+                first = count++ > 0 ? first : last;
+            }
     if (extent)
         *extent = last - first;
     return count - (period > 0 && count > 1 && first + period - last < apart);

@@ -135,22 +135,22 @@ static enum status settings_make(const struct problem *problem, const struct opt
     return options->stages == STAGES_AUTO ? choose_stages(problem, settings, cost) : STATUS_OK;
 }
 
-static enum status forecast(const struct problem *problem, const void *method, const void *given,
-                            struct forecast *forecast)
+/* Its errors are counted as well: they decide the number of levels. */
+static enum status cost(const struct problem *problem, const void *method, const void *given, struct forecast *forecast)
 {
     (void)method;
     const struct options *options = given;
     struct tree_settings settings;
-    struct factorised_cost cost;
+    struct factorised_cost own;
     enum status status = requirements_check(problem);
     if (status == STATUS_OK)
-        status = settings_make(problem, options, &settings, &cost);
+        status = settings_make(problem, options, &settings, &own);
     if (status == STATUS_OK && settings.stages > 0 && options->stages != STAGES_AUTO)
-        status = factorised_cost(problem, &settings, &cost);
+        status = factorised_cost(problem, &settings, &own);
     if (status != STATUS_OK)
         return status;
     if (settings.stages > 0)
-        return factorised_forecast(problem, &settings, &cost, forecast);
+        return factorised_forecast(problem, &settings, &own, forecast);
     return forecast_direct(problem, options->error, forecast);
 }
 
@@ -234,7 +234,7 @@ const struct algorithm bp_factorised = {
     .candidates = candidates,
     .conditions = conditions,
     .promise = promise,
-    .forecast = forecast,
+    .cost = cost,
     .plan = plan,
     .execute = execute,
     .reads = reads,

@@ -178,14 +178,14 @@ static struct work monostatic_work(const void *plan)
     return ((const struct monostatic *)plan)->work;
 }
 
-static enum status monostatic_forecast(const struct problem *problem, const void *method, const void *options,
-                                       struct forecast *forecast)
+static enum status monostatic_errors(const struct problem *problem, const void *method, const void *options,
+                                     struct forecast *forecast)
 {
     void *plan;
     const enum status status = monostatic_plan(problem, method, options, &plan);
     if (status != STATUS_OK)
         return status;
-    *forecast = (struct forecast){.error[CAUSE_DELAYS] = ((const struct monostatic *)plan)->left};
+    forecast->error[CAUSE_DELAYS] = hypot(forecast->error[CAUSE_DELAYS], ((const struct monostatic *)plan)->left);
     monostatic_destroy(plan);
     return STATUS_OK;
 }
@@ -196,7 +196,7 @@ const struct algorithm monostatic = {
     .reference = "SQ18 section 1, [2]; this project's delays",
     .options_size = sizeof(struct options),
     .params = params,
-    .forecast = monostatic_forecast,
+    .errors = monostatic_errors,
     .plan = monostatic_plan,
     .filtered = monostatic_filtered,
     .filter = monostatic_filter,

@@ -34,7 +34,7 @@ const struct algorithm wk_classic = {
     .gated = gated,
     .method = &method,
     .promise = rma_promise,
-    .forecast = wk_forecast,
     .cost = wk_cost,
+    .errors = wk_errors,
     WK_CALLBACKS,
 };

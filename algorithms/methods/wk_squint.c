@@ -52,7 +52,7 @@ const struct algorithm wk_squint = {
     .candidates = candidates,
     .method = &method,
     .promise = promise,
-    .forecast = wk_forecast,
     .cost = wk_cost,
+    .errors = wk_errors,
     WK_CALLBACKS,
 };

@@ -90,16 +90,16 @@ double rma_focused(const struct acquisition *acquisition, const struct rma_bound
 double rma_promise(const void *options);
 
 /* The callbacks of struct algorithm, whose `method` is a struct rma_method, and whose options are a struct rma_options.
-   Conditions, forecast and cost: rma_conditions.h. */
+   Conditions, cost and errors: rma_conditions.h. */
 #define RMA_CALLBACKS                                                                                                  \
-    .traits = TRAIT_WINDOW, .conditions = rma_conditions, .promise = rma_promise, .forecast = rma_forecast,            \
-    .cost = rma_cost, .plan = rma_plan, .execute = rma_execute, .reads = rma_reads, .work = rma_work,                  \
+    .traits = TRAIT_WINDOW, .conditions = rma_conditions, .promise = rma_promise, .cost = rma_cost,                    \
+    .errors = rma_errors, .plan = rma_plan, .execute = rma_execute, .reads = rma_reads, .work = rma_work,              \
     .destroy = rma_destroy
 int rma_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                    int room);
-enum status rma_forecast(const struct problem *problem, const void *method, const void *options,
-                         struct forecast *forecast);
 enum status rma_cost(const struct problem *problem, const void *method, const void *options, struct forecast *forecast);
+enum status rma_errors(const struct problem *problem, const void *method, const void *options,
+                       struct forecast *forecast);
 enum status rma_plan(const struct problem *problem, const void *method, const void *options, void **plan);
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 void rma_reads(const void *plan, bool *read);

@@ -72,7 +72,7 @@ enum status rma_requirements_check(const struct problem *problem, const char *me
 /* Relative energy that an image loses at the ends of the band: beyond the band that it keeps, up to `edge` (cycles a
    sample) inside of it, or at half the sampling rate. Errors: STATUS_FAILED without memory. */
 enum status rma_band_lost(const struct rma_view *view, double edge, double *lost);
-/* rma_forecast's errors: as rma_conditions_check. rma_cost's: STATUS_UNSUPPORTED as rma_requirements_check, and where
-   transforms, work or memory are too large; STATUS_FAILED without memory. */
+/* rma_cost's errors: STATUS_UNSUPPORTED as rma_requirements_check, and where transforms, work or memory are too large;
+   STATUS_FAILED without memory. rma_errors's: as rma_conditions_check. */
 
 #endif

@@ -1,4 +1,4 @@
-/* The forecast of range migration (rma_forecast and rma_cost in rma_conditions.h): estimates of an image's error, where
+/* The forecast of range migration (rma_cost and rma_errors in rma_conditions.h): estimates of an image's error, where
    its conditions refuse by bounds, and counts for its time. The error by the terms of delay compensation is their
    bound. */
 #include <math.h>
@@ -200,8 +200,7 @@ enum status rma_cost(const struct problem *problem, const void *given, const voi
     return STATUS_OK;
 }
 
-enum status rma_forecast(const struct problem *problem, const void *given, const void *options,
-                         struct forecast *forecast)
+enum status rma_errors(const struct problem *problem, const void *given, const void *options, struct forecast *forecast)
 {
     const struct rma_method method = rma_choose(given, options);
     struct condition list[CONDITIONS_MAX];
@@ -209,8 +208,6 @@ enum status rma_forecast(const struct problem *problem, const void *given, const
     struct band band;
     const int count = rma_conditions(problem, given, options, list, CONDITIONS_MAX);
     enum status status = rma_conditions_check(method.name, list, count);
-    if (status == STATUS_OK)
-        status = rma_cost(problem, given, options, forecast);
     if (status != STATUS_OK)
         return status;
     acquisition_is_straight(problem->acquisition, &track);

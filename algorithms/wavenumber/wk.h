@@ -68,12 +68,12 @@ enum status wk_plan(const struct problem *problem, const void *method, const voi
 /* A method that rotates needs a slower platform; one that filters has a condition on the loss of its own targets. */
 int wk_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                   int room);
-/* Errors alone: INFINITY with a filter, without a window or with weights, and with turned axes if the azimuth transform
-   is padded less than 1.25 times. Errors: as wk_plan. */
-enum status wk_forecast(const struct problem *problem, const void *method, const void *options,
-                        struct forecast *forecast);
-/* The counts alone. */
+/* Counts, and errors of the interpolations: INFINITY with a filter, without a window or with weights, and with turned
+   axes if the azimuth transform is padded less than 1.25 times. Errors: as wk_plan. */
 enum status wk_cost(const struct problem *problem, const void *method, const void *options, struct forecast *forecast);
+/* That of the spectrum. */
+enum status wk_errors(const struct problem *problem, const void *method, const void *options,
+                      struct forecast *forecast);
 enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 void wk_reads(const void *plan, bool *read);
 struct work wk_work(const void *plan);

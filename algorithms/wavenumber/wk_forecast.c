@@ -35,7 +35,7 @@ static double interpolations_error(const struct wk *wk)
     return sqrt(squares);
 }
 
-static enum status errors_fill(const struct wk *wk, struct forecast *forecast)
+static enum status spectrum_error(const struct wk *wk, double *error)
 {
     struct straight_track track;
     acquisition_is_straight(wk->problem.acquisition, &track); /* as wk_conditions requires */
@@ -51,22 +51,18 @@ static enum status errors_fill(const struct wk *wk, struct forecast *forecast)
     if (isnan(azimuth))
         return status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", wk->method.name);
     const bool whole = wk->problem.acquisition->bandwidth < wk->problem.acquisition->fs; /* else fs/2 has no law */
-    forecast->error[CAUSE_SPECTRUM] = whole ? hypot(azimuth, sqrt(lost)) : INFINITY;
-    forecast->error[CAUSE_STOLT] = interpolations_error(wk);
-    forecast->error[CAUSE_FLOAT] = ROUNDING[wk->problem.precision];
+    *error = whole ? hypot(azimuth, sqrt(lost)) : INFINITY;
     return STATUS_OK;
 }
 
-enum status wk_forecast(const struct problem *problem, const void *method, const void *options,
-                        struct forecast *forecast)
+enum status wk_errors(const struct problem *problem, const void *method, const void *options, struct forecast *forecast)
 {
     struct wk *wk = NULL;
     enum status status = wk_conditions_check(problem, method);
-    *forecast = (struct forecast){.sums_pairs = false};
     if (status == STATUS_OK)
         status = wk_lay_out(problem, method, options, &wk);
     if (status == STATUS_OK)
-        status = errors_fill(wk, forecast);
+        status = spectrum_error(wk, &forecast->error[CAUSE_SPECTRUM]);
     wk_destroy(wk);
     return status;
 }

@@ -41,7 +41,7 @@ static enum status row_predict(const struct scene *scene, const struct measureme
         return STATUS_OK; /* of another program */
     enum status status = STATUS_UNSUPPORTED;
     const struct problem problem = scene_problem(scene, spec.precision);
-    if (spec.algorithm->forecast)
+    if (spec.algorithm->cost)
         status = algorithm_forecast(spec.algorithm, &problem, spec.options, &forecast);
     if (status == STATUS_OK && isfinite(forecast_error(&forecast))) {
         const double error = forecast_error(&forecast);

@@ -49,7 +49,7 @@ static bool candidate_fill(const struct algorithm *algorithm, const struct candi
 {
     const char *varied = family->varied;
     char fixed[48], *key, *rest = fixed;
-    if (!algorithm->forecast || algorithm->options_size > sizeof candidate->options)
+    if (!algorithm->cost || algorithm->options_size > sizeof candidate->options)
         return false;
     *candidate = (struct candidate){.algorithm = algorithm, .family = number};
     options_fill(algorithm, candidate->options);

@@ -81,7 +81,7 @@ static enum status candidate_count(const struct setting *setting, struct candida
         status = algorithm_cost(algorithm, problem, candidate->options, f);
     if (status == STATUS_OK) {
         laws_compare(setting, candidate);
-        if (algorithm->cost && (f->sums_pairs || candidate->verdict == CANDIDATE_SLOWER)) {
+        if (algorithm->errors && (f->sums_pairs || candidate->verdict == CANDIDATE_SLOWER)) {
             candidate->verdict = CANDIDATE_SLOWER;
             candidate->error = INFINITY;
         }
@@ -216,7 +216,7 @@ enum status laws_complete(const struct setting *setting, struct candidate *c)
     enum status status = laws_counted(c) ? STATUS_OK : laws_count(setting, c);
     if (status != STATUS_OK || !laws_open(c))
         return status;
-    status = algorithm_forecast(c->algorithm, setting->problem, c->options, &c->forecast);
+    status = algorithm_errors(c->algorithm, setting->problem, c->options, &c->forecast);
     if (status == STATUS_OK)
         laws_compare(setting, c);
     return laws_refused(c, status);

@@ -40,7 +40,7 @@ static void check_predictions(const struct conformance *c, const struct setting 
     const bool accepted = conditions_check("the image", list, count) == STATUS_OK;
     promise(c, setting->name, accepted, "its conditions accept what its plan accepts%s%s", accepted ? "" : ": ",
             accepted ? "" : status_message());
-    if (!c->algorithm->forecast || algorithm_forecast(c->algorithm, problem, options, &forecast) != STATUS_OK
+    if (!c->algorithm->cost || algorithm_forecast(c->algorithm, problem, options, &forecast) != STATUS_OK
         || !isfinite(forecast_error(&forecast)))
         return;
     promise_most(c, setting->name, "the error after one gain", error->error_gain,

@@ -294,50 +294,50 @@ static int chain_conditions(const struct problem *problem, const void *method, c
     return count;
 }
 
-/* That of the last link, of the filtered recording, and of each filter: errors' squares and counts add up. */
-static enum status chain_forecast_by(bool errors, const struct problem *problem, const struct chain *chain,
-                                     const void *options, struct forecast *forecast)
+/* Those of the last link, of the filtered recording, and of each filter. */
+static enum status chain_cost(const struct problem *problem, const void *method, const void *options,
+                              struct forecast *forecast)
 {
+    const struct chain *chain = method;
     struct chain_plan *plan;
     enum status status = filters_plan(chain, problem, options, &plan);
     if (status == STATUS_OK) {
         const struct problem last = problem_at(plan, chain->count);
-        status = (errors ? algorithm_forecast : algorithm_cost)(chain->last, &last, options, forecast);
+        status = algorithm_cost(chain->last, &last, options, forecast);
     }
     for (int k = 0; k < chain->count && status == STATUS_OK; k++) {
-        const struct spec *filter = &chain->filters[k];
-        const double flops = filter->algorithm->work(plan->links[k].plan).flops;
-        const struct problem own = problem_at(plan, k);
-        struct forecast added = {.error = {0}};
+        const double flops = chain->filters[k].algorithm->work(plan->links[k].plan).flops;
         forecast->migration[MIGRATION_BLOCKS] += flops;
         forecast->migration_flops += flops;
-        if (errors)
-            status = algorithm_forecast(filter->algorithm, &own, filter->options, &added);
-        for (int cause = 0; cause < CAUSES; cause++)
-            forecast->error[cause] = hypot(forecast->error[cause], added.error[cause]);
     }
     chain_destroy(plan);
     return status;
 }
 
-static enum status chain_forecast(const struct problem *problem, const void *method, const void *options,
-                                  struct forecast *forecast)
+static enum status chain_errors(const struct problem *problem, const void *method, const void *options,
+                                struct forecast *forecast)
 {
-    return chain_forecast_by(true, problem, method, options, forecast);
-}
-
-static enum status chain_cost(const struct problem *problem, const void *method, const void *options,
-                              struct forecast *forecast)
-{
-    return chain_forecast_by(false, problem, method, options, forecast);
+    const struct chain *chain = method;
+    struct chain_plan *plan;
+    enum status status = filters_plan(chain, problem, options, &plan);
+    if (status == STATUS_OK) {
+        const struct problem last = problem_at(plan, chain->count);
+        status = algorithm_errors(chain->last, &last, options, forecast);
+    }
+    for (int k = 0; k < chain->count && status == STATUS_OK; k++) {
+        const struct problem own = problem_at(plan, k);
+        status = algorithm_errors(chain->filters[k].algorithm, &own, chain->filters[k].options, forecast);
+    }
+    chain_destroy(plan);
+    return status;
 }
 
 /* Are all links range migrations and filters with a forecast? */
 static bool has_forecast(const struct chain *chain)
 {
-    bool all = chain->last->forecast && !(chain->last->traits & TRAIT_APERTURE_LIMIT);
+    bool all = chain->last->cost && !(chain->last->traits & TRAIT_APERTURE_LIMIT);
     for (int k = 0; k < chain->count; k++)
-        all = all && chain->filters[k].algorithm->forecast;
+        all = all && chain->filters[k].algorithm->errors;
     return all;
 }
 
@@ -436,8 +436,8 @@ static enum status chain_make(const char *name, struct algorithm *algorithm)
         .params = chain->last->params,
         .method = chain,
         .conditions = chain_conditions,
-        .forecast = has_forecast(chain) ? chain_forecast : NULL,
         .cost = has_forecast(chain) ? chain_cost : NULL,
+        .errors = has_forecast(chain) ? chain_errors : NULL,
         .plan = chain_plan,
         .execute = chain_execute,
         .work = chain_work,

@@ -38,7 +38,7 @@ static double flops_of(const struct scene *scene, const struct spec *spec)
     const struct problem problem = session_problem(scene, algorithm, spec->precision);
     const struct forecast plain = {.sums_pairs = true, .pair_flops = algorithm->traits & TRAIT_EXACT ? EXACT : PAIR};
     struct forecast f = plain;
-    const enum status status = algorithm->forecast ? algorithm_cost(algorithm, &problem, spec->options, &f) : STATUS_OK;
+    const enum status status = algorithm->cost ? algorithm_cost(algorithm, &problem, spec->options, &f) : STATUS_OK;
     if (status == STATUS_UNSUPPORTED)
         return 0;
     if (status != STATUS_OK)

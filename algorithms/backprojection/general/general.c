@@ -241,6 +241,21 @@ static struct pair_span window_span(const struct pixel_window *window, bool rows
     return (struct pair_span){first, first + (rows ? window->rows : window->columns)};
 }
 
+/* The lines of a patch that are shown, each in `parts`. */
+struct patch_parts {
+    int begin, numbers, parts;
+};
+
+static struct patch_parts patch_parts(const struct bp *bp, int k)
+{
+    const struct general *general = bp->state;
+    const struct pixel_window window = problem_window(&bp->problem, k);
+    const struct pair_span shown = window_span(&window, general->along_x[k]);
+    const size_t row_bytes = general->layout.record * real_size(bp->problem.precision);
+    return (struct patch_parts){shown.begin, shown.end - shown.begin,
+                                line_parts(general, &bp->problem.patches[k], general->along_x[k], row_bytes)};
+}
+
 /* A part of `parts`, of one line of patch k. */
 struct line_part {
     int number, part, parts;
@@ -287,6 +302,27 @@ static void sums_clear(const struct bp *bp, int k)
     }
 }
 
+/* Parts of lines, of all patches. */
+static int parts_count(const struct bp *bp)
+{
+    int count = 0;
+    for (int k = 0; k < bp->problem.patch_count; k++)
+        count += patch_parts(bp, k).numbers * patch_parts(bp, k).parts;
+    return count;
+}
+
+/* The batch's pairs of patch k, shared by the team of threads. Threads do not wait for each other: patches have sums
+   of their own, and many are small. */
+static void sum_patch(const struct bp_lines *lines, int k, size_t first, int count)
+{
+    const struct patch_parts all = patch_parts(lines->bp, k);
+#pragma omp for schedule(dynamic) nowait
+    for (int n = 0; n < all.numbers * all.parts; n++)
+        if (progress_step())
+            sum_part(lines, k, (struct line_part){all.begin + n % all.numbers, n / all.numbers, all.parts}, first,
+                     count);
+}
+
 static void general_execute(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
     struct general *general = bp->state;
@@ -312,21 +348,10 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
                                (char *)general->interleaved + (size_t)omp_get_thread_num() * general->each,
                                (char *)general->rows + (size_t)n * general->layout.record * size);
         stages_end(stages, "compress");
-        const double share = (double)(next - begin) / (double)pairs / problem->patch_count;
-        for (int k = 0; k < problem->patch_count; k++) {
-            const struct grid *grid = &problem->patches[k];
-            const struct pixel_window window = problem_window(problem, k);
-            const struct pair_span shown = window_span(&window, general->along_x[k]);
-            const int numbers = shown.end - shown.begin;
-            const int parts = line_parts(general, grid, general->along_x[k], general->layout.record * size);
-            const double done = (double)begin / (double)pairs + share * k;
-            progress_part(done, done + share, numbers * parts);
-#pragma omp parallel for schedule(dynamic)
-            for (int n = 0; n < numbers * parts; n++)
-                if (progress_step())
-                    sum_part(&lines, k, (struct line_part){shown.begin + n % numbers, n / numbers, parts}, first,
-                             count);
-        }
+        progress_part((double)begin / (double)pairs, (double)next / (double)pairs, parts_count(bp));
+#pragma omp parallel
+        for (int k = 0; k < problem->patch_count; k++)
+            sum_patch(&lines, k, first, count);
         stages_end(stages, "focus");
     }
     for (int k = 0; k < problem->patch_count; k++) {

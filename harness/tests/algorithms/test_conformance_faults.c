@@ -100,7 +100,7 @@ static const struct fault {
     {"angle ignored", "turned grid: the error against reference is", {.plan = plan_unturned}},
     {"first patch only", "two patches: the error against reference is", {.execute = execute_first_patch}},
     {"gain", "raw: the gain's distance from 1 is 0.1", {.execute = execute_gain}},
-    {"false forecast", "ordinary: the error after one gain is", {.forecast = forecast_perfect}},
+    {"false forecast", "ordinary: the error after one gain is", {.cost = forecast_perfect}},
     {"false condition",
      "ordinary: its conditions accept what its plan accepts: the image: condition receivers",
      {.conditions = conditions_false}},
@@ -160,7 +160,7 @@ static int run_with(const char *name)
     faulty.traits |= d->traits;
     faulty.plan = d->plan ? d->plan : faulty.plan;
     faulty.execute = d->execute ? d->execute : faulty.execute;
-    faulty.forecast = d->forecast;
+    faulty.cost = d->cost;
     faulty.conditions = d->conditions;
     faulty.work = d->work ? d->work : faulty.work;
     faulty.destroy = d->destroy ? d->destroy : faulty.destroy;
