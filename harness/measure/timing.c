@@ -133,7 +133,7 @@ static const struct budget {
     double first_counts,
         single; /* s: a first run of at least this counts, since it warms up meanwhile; is the only one */
 } budgets[] = {[EFFORT_BRIEF] = {2, 5, 0.04, 0.15, 0.04, 0.3}, [EFFORT_WHOLE] = {3, 5, 0.5, 3, 10, 10}},
-  part = {1, 2, 0.5 / TIMING_ROUNDS, 3.0 / TIMING_ROUNDS, 10, 10};
+  part = {1, 2, 0.5 / TIMING_ROUNDS, 3.0 / TIMING_ROUNDS, 0.5, 10};
 
 /* Of a first run: beyond it, the time is mostly the system's allocation of memory. */
 static const double system_share_most = 0.25;
@@ -149,10 +149,11 @@ static enum status repeat(struct trial *trial, const struct budget *budget, stru
     enum status status = run_once(trial, &stages, &first);
     const bool cold = system_s() - system > system_share_most * first;
     const bool single = first >= budget->single && !cold;
-    if (first >= budget->first_counts && samples->runs == 0 && !cold) {
-        samples->seconds[0] = first;
-        samples->stages[0] = stages;
-        samples->runs = runs = 1;
+    if (first >= budget->first_counts && !cold) {
+        samples->seconds[samples->runs] = first;
+        samples->stages[samples->runs] = stages;
+        samples->runs++;
+        runs = 1;
         elapsed = seconds_now() - begin;
     } else { /* it warmed up */
         begin = seconds_now();

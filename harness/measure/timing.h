@@ -59,7 +59,8 @@ enum effort { EFFORT_NONE, EFFORT_BRIEF, EFFORT_WHOLE };
 /* Plan and run as often as the effort requires; it must not be EFFORT_NONE. Every other run images the negated
    echoes, which detects an image kept from an earlier run; the echoes are restored. The control is timed before the
    runs, unless it just was, and after them; EFFORT_BRIEF omits the latter. With `samples` this is one of
-   TIMING_ROUNDS rounds, each a part of EFFORT_WHOLE; times are of all runs so far. *image is the finished one
+   TIMING_ROUNDS rounds, each a part of EFFORT_WHOLE, where a first run of 0.5 s or more counts; times are of all runs
+   so far. *image is the finished one
    (imaging_finish), freed by the caller. Errors: as imaging_open, imaging_execute, imaging_finish, problem_turn_back,
    and STATUS_FAILED for a time that is not above 0, an image of the negated echoes that is not the negated image,
    and more processors than threads; *image is then empty. */
