@@ -13,17 +13,16 @@
 #include "common/pulse_band.h"
 #include "contract/forecast_time.h"
 
-/* The kernel's branches, if there are at most KERNEL_BRANCHES_MOST; false without memory. In float they may err by the
-   rounding of phase factors (ROUNDING). */
-static bool kernel_make(struct bp *bp, const struct interpolator *in)
+/* The kernel's branches, if there are at most KERNEL_BRANCHES_MOST; false without memory. */
+static bool kernel_make(struct bp *bp, const struct interpolator *in, double phase_limit)
 {
     const size_t count = KERNEL_BRANCHES_MOST * (size_t)in->taps;
-    const double tolerance = bp->problem.precision == PRECISION_DOUBLE ? 1e-10 : 3.5e-6;
     bp->kernel = (struct bp_kernel){.taps = in->taps, .first = in->first};
     bp->kernel.coefficients = store_room(&bp->tables, count, sizeof *bp->kernel.coefficients, 1);
     if (!bp->kernel.coefficients)
         return false;
-    bp->kernel.branches = kernel_branches(in, tolerance, bp->kernel.coefficients);
+    bp->kernel.branches =
+        kernel_branches(in, budget_kernel(phase_limit, bp->problem.precision), bp->kernel.coefficients);
     return bp->kernel.branches >= 0;
 }
 
@@ -51,7 +50,7 @@ static struct bp_table table_of(const struct interpolator *in)
 }
 
 /* Tabulate the interpolator's weights in the plan's precision. */
-static enum status tabulate(struct bp *bp, const struct interpolator *in)
+static enum status tabulate(struct bp *bp, const struct interpolator *in, double phase_limit)
 {
     bp->table = table_of(in);
     if (in->taps == 1)
@@ -91,7 +90,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in)
             else
                 ((float *)bp->weights)[i] = (float)w[i];
     }
-    bool complete = w && at && bp->weights && (in->steps > 0 || kernel_make(bp, in));
+    bool complete = w && at && bp->weights && (in->steps > 0 || kernel_make(bp, in, phase_limit));
     free(w);
     free(at);
     bp->table.weights = bp->weights;
@@ -206,7 +205,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     if (status == STATUS_OK)
         status = bp_met_find(bp);
     if (status == STATUS_OK)
-        status = tabulate(bp, interpolator);
+        status = tabulate(bp, interpolator, options->phase_limit);
     if (status == STATUS_OK)
         status = choose_engine(bp, interpolator, options);
     if (status == STATUS_OK)
@@ -268,7 +267,7 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
     forecast->values = in->degree > 0 ? in->degree + 1 : in->taps;
     if (bp->engine == &bp_invariant || in->degree > 0 || in->taps == 1 || in->steps > 0)
         return STATUS_OK;
-    const bool made = kernel_make(&kernel, in);
+    const bool made = kernel_make(&kernel, in, bp->medium.phase_limit);
     if (made && kernel.kernel.branches > 0 && bp->medium.phase_limit > 0) {
         forecast->kind = READ_BRANCHES;
         forecast->values = kernel.kernel.branches;

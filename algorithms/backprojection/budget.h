@@ -30,6 +30,10 @@
    1e-9 rad        Phases in double, besides L. They are fixed-point numbers with 32 bits of    runs.c, points:
    (double)        a cycle, rounded: 2^-33 cycles, 0.7e-9 rad.                                  `fixed`
 
+   0.035 L         A kernel's weights as branches, relative to its peak; at most 3.5e-6. Not     bp.c, kernel_make
+   (double)        below 1e-10, where L <= 2.9e-9. In float 3.5e-6, as much as phases are
+                   rounded.
+
    In all, in float: 0.994 L + 5.2e-6 rad at the default limit, that is, L + 4.6e-6 rad. In double: L + 1e-9 rad.
 
    Two errors of positions come on top of L/(2 pi fc) s. They do not change phases. Near a tie of two samples, or of two
@@ -72,6 +76,13 @@
 static inline double budget_limit(double phase_limit, double fc_hz, double finest_hz)
 {
     return fmin(phase_limit, 1.57 * fc_hz / finest_hz);
+}
+
+/* What a kernel's weights may err by as branches. */
+static inline double budget_kernel(double phase_limit, enum precision precision)
+{
+    const double most = 3.5e-6;
+    return precision == PRECISION_FLOAT ? most : fmin(fmax(0.035 * phase_limit, 1e-10), most);
 }
 
 /* rad: the share of the quintics. */

@@ -220,8 +220,8 @@ static void rounds_are_one_measurement(void **state)
     static const double control[] = {0.01, 0.01, 0.01, 0.01, 0.02, 0.02, 0.02, 0.02, 0.03, 0.03, 0.03, 0.03};
     struct timing timing;
     for (int round = 0; round < TIMING_ROUNDS; round++) {
-        const struct told told = {{0.4, 0.02 * slowness[round]}, .waited = 0.5 * (round == 1), .pairs = QUICK_PAIRS};
-        tell(&told, control + 4 * round);
+        const struct told slow = {{0.4, 0.02 * slowness[round]}, .waited = 0.5 * (round == 1), .pairs = QUICK_PAIRS};
+        tell(&slow, control + 4 * round);
         timing = timed(EFFORT_WHOLE, &samples);
     }
     assert_int_equal(timing.runs, 9 + 3 + 5); /* in 0.5/3 s each */
