@@ -30,9 +30,8 @@
    1e-9 rad        Phases in double, besides L. They are fixed-point numbers with 32 bits of    runs.c, points:
    (double)        a cycle, rounded: 2^-33 cycles, 0.7e-9 rad.                                  `fixed`
 
-   0.035 L         A kernel's weights as branches, relative to its peak; at most 3.5e-6. Not     bp.c, kernel_make
-   (double)        below 1e-10, where L <= 2.9e-9. In float 3.5e-6, as much as phases are
-                   rounded.
+   0.035 L         A kernel's weights as branches, relative to its peak; at most 3.5e-6. In      bp.c, kernel_make
+   (double)        float 3.5e-6, as much as phases are rounded.
 
    In all, in float: 0.994 L + 5.2e-6 rad at the default limit, that is, L + 4.6e-6 rad. In double: L + 1e-9 rad.
 
@@ -82,7 +81,7 @@ static inline double budget_limit(double phase_limit, double fc_hz, double fines
 static inline double budget_kernel(double phase_limit, enum precision precision)
 {
     const double most = 3.5e-6;
-    return precision == PRECISION_FLOAT ? most : fmin(fmax(0.035 * phase_limit, 1e-10), most);
+    return precision == PRECISION_FLOAT ? most : fmin(0.035 * phase_limit, most);
 }
 
 /* rad: the share of the quintics. */
