@@ -231,7 +231,7 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
                        ACQUISITION_UNEVEN_MOST,
                        "how far pings, receivers and starts of record lie off a uniform straight track along x "
                        "(wavelengths)",
-                       "back projection");
+                       "back projection, or motion compensation by the filter 'monostatic |' ahead of it");
     list[(*count)++] = condition_least(SEVERITY_REFUSE, "pings", a->pings, 1,
                                        "the number of pings (one has no azimuth spectrum)", "back projection");
     /* A limit at the edge of the echoes' own beam leaves out only pairs without an echo of the pixel. */

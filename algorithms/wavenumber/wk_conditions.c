@@ -120,10 +120,10 @@ static int requirements(const struct problem *problem, struct condition all[COND
     all[0].limit = SLOWEST; /* subsonic */
     double aside = fmax(fabs(condition_offset(a, 0)), fabs(condition_offset(a, 2)));
     all[count++] = condition_most(SEVERITY_REFUSE, "one_receiver", a->receivers, 1, "the number of receivers",
-                                  "back projection or range migration (rma_*)");
+                                  "back projection, range migration (rma_*), or the filter 'monostatic |' ahead of it");
     all[count++] = condition_most(SEVERITY_REFUSE, "monostatic", aside * a->fc / a->sound_speed, 1e-3,
                                   "how far the receiver is from the transmitter along the track (wavelengths)",
-                                  "back projection or range migration (rma_*)");
+                                  "back projection, range migration (rma_*), or the filter 'monostatic |' ahead of it");
     if (azimuth_requirements(problem, all, &count, track) && conditions_accept(all, count))
         beam_conditions(problem, track, all, &count);
     return count;
