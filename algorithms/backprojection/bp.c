@@ -334,9 +334,9 @@ static enum status forecast_engine(const struct bp *begun, const struct interpol
     return status;
 }
 
-/* The forecast without conditions and the error law. engine=auto takes the invariant
-   engine, whose delays are more exact, unless the general one gains a tenth of the time or more: by the built-in rates,
-   so that a setting makes the same image on every machine. */
+/* The forecast without conditions and the error law. engine=auto takes the invariant engine, whose delays are more
+   exact, unless the general one gains a tenth of the time or more: by the built-in rates, so that a setting makes the
+   same image on every machine. */
 static enum status forecast_work(const struct bp *bp, const struct interpolator *in, const struct bp_options *options,
                                  struct forecast *forecast)
 {

@@ -294,42 +294,38 @@ static int chain_conditions(const struct problem *problem, const void *method, c
     return count;
 }
 
-/* Those of the last link, of the filtered recording, and of each filter. */
-static enum status chain_cost(const struct problem *problem, const void *method, const void *options,
-                              struct forecast *forecast)
+/* Cost or errors of the last link, of the filtered recording, and of each filter. */
+static enum status chain_predict(bool errors, const struct problem *problem, const struct chain *chain,
+                                 const void *options, struct forecast *forecast)
 {
-    const struct chain *chain = method;
     struct chain_plan *plan;
     enum status status = filters_plan(chain, problem, options, &plan);
     if (status == STATUS_OK) {
         const struct problem last = problem_at(plan, chain->count);
-        status = algorithm_cost(chain->last, &last, options, forecast);
+        status = (errors ? algorithm_errors : algorithm_cost)(chain->last, &last, options, forecast);
     }
     for (int k = 0; k < chain->count && status == STATUS_OK; k++) {
-        const double flops = chain->filters[k].algorithm->work(plan->links[k].plan).flops;
+        const struct spec *filter = &chain->filters[k];
+        const struct problem own = problem_at(plan, k);
+        const double flops = errors ? 0 : filter->algorithm->work(plan->links[k].plan).flops;
         forecast->migration[MIGRATION_BLOCKS] += flops;
         forecast->migration_flops += flops;
+        status = errors ? algorithm_errors(filter->algorithm, &own, filter->options, forecast) : STATUS_OK;
     }
     chain_destroy(plan);
     return status;
 }
 
+static enum status chain_cost(const struct problem *problem, const void *method, const void *options,
+                              struct forecast *forecast)
+{
+    return chain_predict(false, problem, method, options, forecast);
+}
+
 static enum status chain_errors(const struct problem *problem, const void *method, const void *options,
                                 struct forecast *forecast)
 {
-    const struct chain *chain = method;
-    struct chain_plan *plan;
-    enum status status = filters_plan(chain, problem, options, &plan);
-    if (status == STATUS_OK) {
-        const struct problem last = problem_at(plan, chain->count);
-        status = algorithm_errors(chain->last, &last, options, forecast);
-    }
-    for (int k = 0; k < chain->count && status == STATUS_OK; k++) {
-        const struct problem own = problem_at(plan, k);
-        status = algorithm_errors(chain->filters[k].algorithm, &own, chain->filters[k].options, forecast);
-    }
-    chain_destroy(plan);
-    return status;
+    return chain_predict(true, problem, method, options, forecast);
 }
 
 /* Are all links range migrations and filters with a forecast? */

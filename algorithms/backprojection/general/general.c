@@ -306,8 +306,10 @@ static void sums_clear(const struct bp *bp, int k)
 static int parts_count(const struct bp *bp)
 {
     int count = 0;
-    for (int k = 0; k < bp->problem.patch_count; k++)
-        count += patch_parts(bp, k).numbers * patch_parts(bp, k).parts;
+    for (int k = 0; k < bp->problem.patch_count; k++) {
+        const struct patch_parts all = patch_parts(bp, k);
+        count += all.numbers * all.parts;
+    }
     return count;
 }
 
@@ -334,6 +336,7 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
         {0, 0}};
     for (int k = 0; k < problem->patch_count; k++)
         sums_clear(bp, k);
+    const int parts = parts_count(bp);
     for (size_t begin = 0, next; begin < pairs; begin = next) {
         next = batch_end(general, problem->acquisition, begin);
         size_t first = begin, end = next;
@@ -348,7 +351,7 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
                                (char *)general->interleaved + (size_t)omp_get_thread_num() * general->each,
                                (char *)general->rows + (size_t)n * general->layout.record * size);
         stages_end(stages, "compress");
-        progress_part((double)begin / (double)pairs, (double)next / (double)pairs, parts_count(bp));
+        progress_part((double)begin / (double)pairs, (double)next / (double)pairs, parts);
 #pragma omp parallel
         for (int k = 0; k < problem->patch_count; k++)
             sum_patch(&lines, k, first, count);
