@@ -27,13 +27,14 @@
                    2^-26 cycles, 0.9e-7 rad. The line that is counted on: 32 steps of 2^-32     runs.c, points_flat
                    cycles, 0.5e-7 rad. The product with the sample: some 2e-7.
 
-   1e-9 rad        Phases in double, besides L. They are fixed-point numbers with 32 bits of    runs.c, points:
-   (double)        a cycle, rounded: 2^-33 cycles, 0.7e-9 rad.                                  `fixed`
+   1.2e-9 rad      Phases in double, besides L. Short polynomials of sine and cosine err by     common/phasor.h,
+   (double)        5e-10 (measured over all phases). Without AVX phases are fixed-point         PHASOR_SHORT_SINE;
+                   numbers with 32 bits of a cycle, rounded: 2^-33 cycles, 0.7e-9 rad.          runs.c, FRACTIONS
 
    0.035 L         A kernel's weights as branches, relative to its peak; at most 3.5e-6. In      bp.c, kernel_make
    (double)        float 3.5e-6, as much as phases are rounded.
 
-   In all, in float: 0.994 L + 5.2e-6 rad at the default limit, that is, L + 4.6e-6 rad. In double: L + 1e-9 rad.
+   In all, in float: 0.994 L + 5.2e-6 rad at the default limit, that is, L + 4.6e-6 rad. In double: L + 1.2e-9 rad.
 
    Two errors of positions come on top of L/(2 pi fc) s. They do not change phases. Near a tie of two samples, or of two
    steps of a table, they decide which one a position takes:
@@ -44,13 +45,13 @@
                    of half a bit stay below 2^-17.
 
    2^-19 sample    All other runs, and so all in double. Points are fixed-point numbers with    runs.c, points:
-                   19 bits of fraction (POINT_BITS). Nearest samples have 32 bits; the points   `point`
-                   of cubics are 1/256 sample.
+                   19 bits of fraction (POINT_BITS). Nearest samples have 32 bits, in double    `point`
+                   with AVX all; the points of cubics are 1/256 sample.
 
    Polynomials (bp_farrow) have no ties. They err by the signal's slope times the error of the position:
 
-   2^-33 sample    Fixed-point numbers with 32 bits of fraction (FIXED_32).                     runs.c, points:
-   (double)                                                                                     `point`
+   2^-33 sample    Without AVX: fixed-point numbers with 32 bits of fraction (FIXED_32).        runs.c, points:
+   (double)                                                                                     DISTANCES
 
    6e-7 sample     Runs that bend little, in float: fixed-point numbers with 23 bits of         runs.c, ladder_make
    (float)         fraction along the line, plus the bend in float, 3 n 2^-24 cycles times

@@ -55,10 +55,8 @@ typedef double two_floats __attribute__((may_alias, aligned(sizeof(real)))); /* 
 typedef float bits __attribute__((may_alias));
 typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 
-PHASOR(phasor_vector, vector_real, PHASOR_SINE, PHASOR_COSINE)
-#if WINDOWS || REAL_DOUBLE
+PHASOR(phasor_full, vector_real, PHASOR_SINE, PHASOR_COSINE)
 PHASOR(phasor_short, vector_real, PHASOR_SHORT_SINE, PHASOR_SHORT_COSINE)
-#endif
 
 /* LANES values: copies, which are faster than gather instructions. */
 INLINE vector_real gather_one(const real *from, const int *index)
@@ -197,21 +195,20 @@ INLINE void take(struct taking taking, struct record record, size_t apart, const
 {
     const real *row = record.values;
     vector_real c, s, x, y;
-#if WINDOWS || REAL_DOUBLE
-    if (REAL_DOUBLE || taking.loading != APART)
-        phasor_short(*at(run->cycles + i), &c, &s);
+    const bool each = taking.loading == APART || taking.loading == EXACT;
+    if (taking.loading == EXACT || (each && !REAL_DOUBLE)) /* copies are what takes float's time there */
+        phasor_full(*at(run->cycles + i), &c, &s);
     else
-#endif
-        phasor_vector(*at(run->cycles + i), &c, &s);
+        phasor_short(*at(run->cycles + i), &c, &s);
 #if PERMUTES
-    if (taking.branches > 1 && taking.loading != APART)
+    if (taking.branches > 1 && !each)
         take_branches_together(taking.branches, taking.loading, record, apart, run, i, &x, &y);
     else
 #endif
         if (taking.branches > 1)
         take_branches_apart(taking.branches, record, apart, run, i, &x, &y);
 #if WINDOWS
-    else if (taking.loading != APART)
+    else if (!each)
         take_windows(taking.line, taking.loading, row, apart, run, i, &x, &y);
 #endif
     else {
@@ -265,7 +262,7 @@ INLINE void add_taken(struct taking taking, const struct receiver_group *group, 
 }
 
 /* Ways of taking as functions of their own: where several are inlined into one function, the compiler's choice of
-   registers for each depends on the others. */
+   registers for each depends on the others. It leaves out those that no table names. */
 typedef void adding(const struct receiver_group *group, struct run *runs, struct pair_span pixels, real *re, real *im);
 #define ADDING(name, line, branches, loading)                                                                          \
     static __attribute__((noinline)) void name(const struct receiver_group *group, struct run *runs,                   \
@@ -276,7 +273,8 @@ typedef void adding(const struct receiver_group *group, struct run *runs, struct
 #define WAYS(name, line, branches)                                                                                     \
     ADDING(name##_apart, line, branches, APART)                                                                        \
     ADDING(name##_fours, line, branches, FOURS)                                                                        \
-    ADDING(name##_together, line, branches, TOGETHER)
+    ADDING(name##_together, line, branches, TOGETHER)                                                                  \
+    ADDING(name##_exact, line, branches, EXACT)
 WAYS(nearest, false, 1)
 WAYS(line, true, 1)
 WAYS(three, false, 3)
@@ -285,16 +283,19 @@ WAYS(five, false, 5)
 WAYS(six, false, 6)
 WAYS(any, false, group->table->branches)
 
-/* By how samples are loaded. */
-typedef adding *const ways[3];
-#define WAYS_OF(name)                                                                                                  \
+/* By how samples are loaded (enum loading), of what loading_choose takes. */
+typedef adding *const ways[4];
+#define WAYS_OF(name, fours, together)                                                                                 \
     {                                                                                                                  \
-        name##_apart, name##_fours, name##_together                                                                    \
+        name##_apart, (fours) ? name##_fours : NULL, (together) ? name##_together : NULL,                              \
+            REAL_DOUBLE ? name##_exact : name##_apart                                                                  \
     }
-static const ways ways_nearest = WAYS_OF(nearest), ways_line = WAYS_OF(line);
+#define WAYS_OF_BRANCHES(name) WAYS_OF(name, BLOCKS, PERMUTES)
+static const ways ways_nearest = WAYS_OF(nearest, WINDOWS, WINDOWS), ways_line = WAYS_OF(line, WINDOWS, WINDOWS);
 /* The usual numbers of branches unroll, any other one works as well. */
 enum { USUAL_LEAST = 3, USUAL_MOST = 6 };
-static const ways ways_any = WAYS_OF(any), ways_usual[] = {WAYS_OF(three), WAYS_OF(four), WAYS_OF(five), WAYS_OF(six)};
+static const ways ways_any = WAYS_OF_BRANCHES(any), ways_usual[] = {WAYS_OF_BRANCHES(three), WAYS_OF_BRANCHES(four),
+                                                                    WAYS_OF_BRANCHES(five), WAYS_OF_BRANCHES(six)};
 
 static adding *const *ways_choose(const struct bp_table *table)
 {

@@ -16,7 +16,7 @@
 
 enum {
     BATCH_BYTES = 1 << 20, /* rows of one batch: they stay in the second-level cache while all lines read them */
-    BATCH_LEAST = 16,      /* rows of one batch at least, so that threads share the compression */
+    BATCH_LEAST = 8,       /* rows of one batch at least, and one for each thread, as they share the compression */
     PART_LEAST = 256       /* pixels of a part of a line at least: some blocks */
 };
 
@@ -173,9 +173,9 @@ static enum status general_plan(struct bp *bp)
     size_t size = real_size(problem->precision), row_bytes = general->layout.record * size;
     double pairs = (double)a->pings * a->receivers;
     general->sum = ISA_CHOOSE(bp_sum, problem->precision);
-    general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
-    general->rows = store_room(store, (size_t)general->batch * row_bytes + size, 1, 0);
     const size_t threads = (size_t)omp_get_max_threads();
+    general->batch = (int)fmin(pairs, fmax(fmax(BATCH_LEAST, (double)threads), (double)(BATCH_BYTES / row_bytes)));
+    general->rows = store_room(store, (size_t)general->batch * row_bytes + size, 1, 0);
     general->each = 2 * bp_record_values(bp) * size;
     general->interleaved = store_room(store, threads, general->each, 1.0 / (double)threads);
     general->normal = store_room(store, (size_t)a->pings, sizeof *general->normal, 1);

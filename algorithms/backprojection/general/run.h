@@ -72,6 +72,8 @@
                                          (BP_INTERVAL_BITS), sample = the others; rest = fraction 2^-19
        phase in cycles        FIXED_32   low word as a signed number, times 2^-32: -1/2 to 1/2, whole cycles drop out
 
+   In double with AVX, what FIXED_32 does is done by instructions that round (FRACTION, NEAREST in runs.c).
+
    13 bits are -4096 to 4095 points: run.base is subtracted, and a run spans at most POINTS_MOST points, but for cubics.
    Half a step is added before (scale.shift) where positions are rounded to the nearest step, as cutting bits off is
    floor. */
@@ -114,9 +116,10 @@ typedef float vector_bits __attribute__((vector_size(VECTOR_BYTES))); /* moved, 
 
 /* How the samples of neighbouring pixels are loaded. */
 enum loading {
-    APART,   /* each by itself */
-    FOURS,   /* those of four pixels at once: at most half a sample from pixel to pixel. Branches: out of two blocks */
-    TOGETHER /* those of a vector at once: at most 2/LANES. Branches: out of one window */
+    APART,    /* each by itself */
+    FOURS,    /* those of four pixels at once: at most half a sample from pixel to pixel. Branches: out of two blocks */
+    TOGETHER, /* those of a vector at once: at most 2/LANES. Branches: out of one window */
+    EXACT     /* each by itself, with full phase factors: where every delay is evaluated */
 };
 
 /* Where a run of pixels reads a record. */

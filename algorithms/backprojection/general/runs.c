@@ -8,22 +8,31 @@
 #include "backprojection/budget.h"
 #include "backprojection/general/run.h"
 
-/* Vectors of float rounded to whole ones, and to the nearest integers; whole ones as integers. Whatever the rounding
-   mode. */
-#if WINDOWS
+/* Vectors less the nearest whole numbers, and these as integers; of float also rounded down, and whole ones as
+   integers. Whatever the rounding mode. */
+#ifdef __AVX__
 #include <immintrin.h>
-#if VECTOR_BYTES == 64
-#define ROUND(values)                                                                                                  \
-    (vector_real) _mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
-#define FLOOR(values) (vector_real) _mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
-#define NEAREST(values)                                                                                                \
-    (vector_int) _mm512_cvt_roundps_epi32((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
-#define WHOLE(values) (vector_int) _mm512_cvtps_epi32((__m512)(values))
+#define TO_NEAREST (_MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define DOWN       (_MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
+#if VECTOR_BYTES == 64 && REAL_DOUBLE
+#define FRACTION(values) (vector_real) _mm512_reduce_pd((__m512d)(values), TO_NEAREST)
+#define NEAREST(values)  (vector_int) _mm512_cvt_roundpd_epi32((__m512d)(values), TO_NEAREST)
+#elif VECTOR_BYTES == 64
+#define FRACTION(values) (vector_real) _mm512_reduce_ps((__m512)(values), TO_NEAREST)
+#define NEAREST(values)  (vector_int) _mm512_cvt_roundps_epi32((__m512)(values), TO_NEAREST)
+#define FLOOR(values)    (vector_real) _mm512_roundscale_ps((__m512)(values), DOWN)
+#define WHOLE(values)    (vector_int) _mm512_cvtps_epi32((__m512)(values))
 #else
-#define ROUND(values)   (vector_real) _mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
-#define FLOOR(values)   (vector_real) _mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
-#define NEAREST(values) WHOLE(ROUND(values))
-#define WHOLE(values)   (vector_int) _mm256_cvtps_epi32((__m256)(values))
+#if REAL_DOUBLE
+#define ROUND(values) (vector_real) _mm256_round_pd((__m256d)(values), TO_NEAREST)
+#define WHOLE(values) (vector_int) _mm256_cvtpd_epi32((__m256d)(values))
+#else
+#define ROUND(values) (vector_real) _mm256_round_ps((__m256)(values), TO_NEAREST)
+#define FLOOR(values) (vector_real) _mm256_round_ps((__m256)(values), DOWN)
+#define WHOLE(values) (vector_int) _mm256_cvtps_epi32((__m256)(values))
+#endif
+#define FRACTION(values) ((values)-ROUND(values))
+#define NEAREST(values)  WHOLE(ROUND(values))
 #endif
 #endif
 
@@ -72,12 +81,28 @@ INLINE void quintics(double (*tau)[GROUP_RECEIVERS], const struct scale *scale, 
     }
 }
 
-/* Points of a run of pixels from `first` pixels past the block's middle on, as fixed-point numbers (run.h). Bits are
-   cut off, which is floor: the rounding mode affects only the last bit. Fills whole vectors, up to LANES - 1 pixels
-   more than `count`. `reading` is a constant where this is inlined. */
 #define LANE(n) n
 #define LOW(v)  (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
 #define HIGH(v) (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
+/* The nearest samples, the distances from them, and phases as fractions of a cycle: of fixed-point numbers, or where
+   an instruction rounds vectors of double. */
+#if defined __AVX__ && REAL_DOUBLE
+#define POINT_ADDEND (-0.5)
+#define CYCLE_ADDEND 0
+#define SAMPLES(v)   NEAREST(v[0])
+#define DISTANCES(v) FRACTION(v[0])
+#define FRACTIONS(v) FRACTION(v[0])
+#else
+#define POINT_ADDEND FIXED_32
+#define CYCLE_ADDEND FIXED_32
+#define SAMPLES(v)   (HIGH(v) - FIXED_32_HIGH)
+#define DISTANCES(v) (__builtin_convertvector(LOW(v) ^ INT_MIN, vector_real) * LAST_32)
+#define FRACTIONS(v) (__builtin_convertvector(LOW(v), vector_real) * LAST_32)
+#endif
+
+/* Points of a run of pixels from `first` pixels past the block's middle on, as fixed-point numbers (run.h). Bits are
+   cut off, which is floor: the rounding mode affects only the last bit. Fills whole vectors, up to LANES - 1 pixels
+   more than `count`. `reading` is a constant where this is inlined. */
 INLINE void points(double (*quintic)[GROUP_RECEIVERS], int g, const struct scale *scale, double first, int count,
                    enum bp_reading reading, int steps, struct run *run)
 {
@@ -88,8 +113,9 @@ INLINE void points(double (*quintic)[GROUP_RECEIVERS], int g, const struct scale
         begin = begin * first + c[k];
     }
     run->base = cubics ? 0 : (int)begin;
-    const double shift = scale->shift - run->base + (nearest ? FIXED_32 : FIXED_19), ratio = scale->ratio;
-    const double cycles = c[0] * ratio + scale->base, base = scale->base - floor(cycles) + FIXED_32;
+    const double shift = scale->shift - run->base + (nearest ? POINT_ADDEND : FIXED_19);
+    const double ratio = scale->ratio, cycles = c[0] * ratio + scale->base;
+    const double base = scale->base - floor(cycles) + CYCLE_ADDEND;
     const real one_step = 1 / (real)steps;
     vector_double u[2] = {PART(LANE, 0), PART(LANE, 2)};
     u[0] += first;
@@ -107,8 +133,8 @@ INLINE void points(double (*quintic)[GROUP_RECEIVERS], int g, const struct scale
         vector_int sample = LOW(point), rest = sample & ((1 << POINT_BITS) - 1);
         if (nearest) {
             if (reading == BP_BRANCHES)
-                *at(run->rest + i) = __builtin_convertvector(sample ^ INT_MIN, vector_real) * LAST_32;
-            sample = HIGH(point) - FIXED_32_HIGH;
+                *at(run->rest + i) = DISTANCES(point);
+            sample = SAMPLES(point);
         } else if (cubics) {
             sample = LOW(whole);
             *(vector_int *)(run->step + i) = sample & (BP_INTERVALS - 1);
@@ -123,7 +149,7 @@ INLINE void points(double (*quintic)[GROUP_RECEIVERS], int g, const struct scale
                 *(vector_int *)(run->step + i) = step;
         }
         *(vector_int *)(run->sample + i) = sample;
-        *at(run->cycles + i) = __builtin_convertvector(LOW(fixed), vector_real) * LAST_32;
+        *at(run->cycles + i) = FRACTIONS(fixed);
     }
 }
 
@@ -210,7 +236,7 @@ INLINE void points_flat(const struct flat *flat, int g, const struct scale *scal
             *at(run->rest + i) = FLOOR((point - whole) * (real)steps) * one_step;
         } else
             *(vector_int *)(run->sample + i) = NEAREST(point);
-        *at(run->cycles + i) = cycle - ROUND(cycle);
+        *at(run->cycles + i) = FRACTION(cycle);
         cycles += cycles_step;
         u += LANES;
     }

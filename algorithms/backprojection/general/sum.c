@@ -137,7 +137,7 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
                                                         .row =
                                                             (const real *)ping->rows + (size_t)m * ping->layout.record,
                                                         .layout = ping->layout};
-            BP_GATHER(&one_receiver, APART, (struct pair_span){0, count}, &run, sum->re + first, sum->im + first);
+            BP_GATHER(&one_receiver, EXACT, (struct pair_span){0, count}, &run, sum->re + first, sum->im + first);
         }
     }
 }

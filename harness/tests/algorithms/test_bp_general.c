@@ -232,13 +232,13 @@ static void parts_make_the_whole(void **state)
 }
 
 /* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has
-   more, show the same images, on either path and in the invariant engine; in float but for what the general engine's
-   fast path may err by (backprojection/budget.h). */
+   more, show the same images, on either path and in the invariant engine, but for what the general engine's fast path
+   may err by (backprojection/budget.h). */
 static void instruction_sets_agree(void **state)
 {
     (void)state;
     static const char *const paths[] = {"exact=true", "engine=general", "engine=invariant"};
-    double worst[2] = {0, 0}, worst_fast = 0;
+    double worst[2] = {0, 0}, worst_fast[2] = {0, 0};
     for (int k = 0; k < 2; k++)
         for (int m = 0; m < METHODS; m++)
             for (int n = 0; n < 3; n++)
@@ -258,7 +258,7 @@ static void instruction_sets_agree(void **state)
                         setenv("SASBENCH_ISA", lower ? "v3" : "baseline", 1);
                         assert_int_equal(support_image(spec, problem, &echoes, &other), STATUS_OK);
                         unsetenv("SASBENCH_ISA");
-                        double *most = n == 1 && p == 0 ? &worst_fast : &worst[p];
+                        double *most = n == 1 ? &worst_fast[p] : &worst[p];
                         *most = worse_of(*most, support_difference(&other, &best));
                         image_free(&other);
                     }
@@ -266,9 +266,10 @@ static void instruction_sets_agree(void **state)
                     echoes_free(&echoes);
                     acquisition_free(&a);
                 }
-    print_message("lesser instruction sets: within %.1e (float), %.1e (float, general), %.1e (double) of the best\n",
-                  worst[0], worst_fast, worst[1]);
-    assert_true(worst[0] < 1e-6 && worst_fast < 0.15 * 1e-4 + 2e-6 && worst[1] < 1e-10);
+    print_message("lesser instruction sets: within %.1e (float), %.1e (double) of the best; general: %.1e, %.1e\n",
+                  worst[0], worst[1], worst_fast[0], worst_fast[1]);
+    assert_true(worst[0] < 1e-6 && worst[1] < 1e-10);
+    assert_true(worst_fast[0] < 0.15 * 1e-4 + 2e-6 && worst_fast[1] < 1e-9);
 }
 
 /* Carriers so low that no scene may have them, down to where turns underflow: still no index but those of the
