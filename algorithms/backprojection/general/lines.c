@@ -12,7 +12,7 @@ size_t bp_branch_length(const struct bp *bp)
 size_t bp_record_values(const struct bp *bp)
 {
     const size_t trace = (size_t)bp->shape.branches * (size_t)bp->shape.length;
-    return trace + (bp->table.branches > bp->shape.branches ? (size_t)bp->table.branches * bp_branch_length(bp) : 0);
+    return trace + (bp->table.branches > bp->shape.branches ? bp_branch_length(bp) : 0);
 }
 
 /* Two blocks more than a record has: windows are two. Rounded up, so that a plan needs the same memory everywhere. */
@@ -193,20 +193,17 @@ void bp_lines_store(enum precision precision, const struct grid *grid, bool alon
         }
 }
 
-/* A kernel's branches of a trace, complex [branches][length], which follow it; 0 beyond the record's ends. */
-static void filter(const struct bp *bp, char *trace)
+/* A kernel's branch m of a trace, complex [length]; 0 beyond the record's ends. */
+static void filter(const struct bp *bp, const char *trace, size_t m, char *branch)
 {
     const struct bp_kernel *kernel = &bp->kernel;
-    const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp), guard = (size_t)bp->table.guard;
-    const size_t bytes = 2 * real_size(bp->problem.precision), taps = (size_t)kernel->taps;
-    char *to = trace + (size_t)bp->shape.length * bytes;
+    const size_t length = bp_branch_length(bp), guard = (size_t)bp->table.guard, taps = (size_t)kernel->taps;
+    const size_t bytes = 2 * real_size(bp->problem.precision);
     const char *from = trace + (size_t)(bp->shape.guard + kernel->first) * bytes;
-    for (size_t m = 0; m < branches; m++, to += length * bytes) {
-        memset(to, 0, guard * bytes);
-        bp->planes->convolve(from, kernel->coefficients + m * taps, kernel->taps, length - 2 * guard, false,
-                             to + guard * bytes);
-        memset(to + (length - guard) * bytes, 0, guard * bytes);
-    }
+    memset(branch, 0, guard * bytes);
+    bp->planes->convolve(from, kernel->coefficients + m * taps, kernel->taps, length - 2 * guard, false,
+                         branch + guard * bytes);
+    memset(branch + (length - guard) * bytes, 0, guard * bytes);
 }
 
 void bp_record_fill(const struct bp *bp, const struct bp_layout *layout, const struct echoes *echoes, size_t index,
@@ -214,15 +211,14 @@ void bp_record_fill(const struct bp *bp, const struct bp_layout *layout, const s
 {
     const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp), blocks = (size_t)layout->blocks;
     const size_t block = layout->apart, size = real_size(bp->problem.precision);
-    char *from = scratch, *to = row;
-    traces_of(bp->problem.precision)->fill(bp->traces, omp_get_thread_num(), bp_record(bp, echoes, index), from);
-    if (bp->table.branches > bp->shape.branches) {
-        filter(bp, from);
-        from += 2 * (size_t)bp->shape.length * size;
-    }
+    const bool filtered = bp->table.branches > bp->shape.branches;
+    char *trace = scratch, *one = trace + 2 * (size_t)bp->shape.length * size, *to = row;
+    traces_of(bp->problem.precision)->fill(bp->traces, omp_get_thread_num(), bp_record(bp, echoes, index), trace);
     for (size_t m = 0; m < branches; m++) {
-        const char *branch = from + m * 2 * length * size;
+        const char *branch = filtered ? one : trace + m * 2 * length * size;
         char *parts = to + m * 2 * block * size;
+        if (filtered)
+            filter(bp, trace, m, one);
         if (blocks > 1)
             bp->planes->part_blocks(branch, length, blocks, block, 2 * branches * block, parts);
         else
