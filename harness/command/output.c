@@ -148,7 +148,6 @@ void origin_print(const struct image_origin *origin)
 
 void image_describe(const struct image *image)
 {
-    const struct brightest brightest = metrics_brightest(image);
     const struct sharpness sharpness = metrics_sharpness(image);
     for (int p = 0; p < image->patch_count && p < 8; p++) {
         const struct grid *g = &image->patches[p];
@@ -161,12 +160,12 @@ void image_describe(const struct image *image)
     }
     if (image->patch_count > 8)
         printf("  and %d patches more\n", image->patch_count - 8);
-    if (!(brightest.magnitude > 0)) {
+    if (!(sharpness.peak > 0)) {
         printf("  all pixels are zero\n");
         return;
     }
-    printf("  peak %.4g at (%s, %s) m", brightest.magnitude, cell_place(brightest.x, image->patches[0].x_step).text,
-           cell_place(brightest.r, image->patches[0].r_step).text);
+    printf("  peak %.4g at (%s, %s) m", sharpness.peak, cell_place(sharpness.x, image->patches[0].x_step).text,
+           cell_place(sharpness.r, image->patches[0].r_step).text);
     if (isfinite(sharpness.peak_over_median))
         printf(", %.4g times the median", sharpness.peak_over_median);
     printf("\n");

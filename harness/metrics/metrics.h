@@ -79,13 +79,9 @@ struct sharpness {
     double entropy;          /* -sum q ln q, q = I/sum I: 0 for one bright pixel, ln of their number for even ones */
     double contrast;         /* standard deviation of I over its mean */
     double peak_over_median; /* of the magnitudes */
+    double peak;             /* magnitude of the brightest pixel that is finite; 0 without one */
+    double x, r;             /* m, its place in the track's axes */
 };
 struct sharpness metrics_sharpness(const struct image *image);
-
-/* The brightest pixel, in the track's axes; magnitude 0 where all are zero or not finite. */
-struct brightest {
-    double magnitude, x, r; /* m */
-};
-struct brightest metrics_brightest(const struct image *image);
 
 #endif

@@ -1,4 +1,4 @@
-/* How sharp an image is, whatever it shows (metrics.h). */
+/* An image's peak, and how sharp it is, whatever it shows (metrics.h). */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -27,31 +27,23 @@ static void pixels_visit(const struct image *image, double peak, pixel_function 
                 function(sums, magnitude_of(image, p, i, j) / peak);
 }
 
-struct peak {
-    double magnitude;
-    bool finite; /* all pixels */
-};
-
-static void peak_visit(void *sums, double magnitude)
+/* The brightest pixel that is finite; false where others are not. */
+static bool peak_find(const struct image *image, struct sharpness *sharpness)
 {
-    struct peak *peak = sums;
-    peak->magnitude = magnitude > peak->magnitude ? magnitude : peak->magnitude;
-    peak->finite = peak->finite && isfinite(magnitude);
-}
-
-struct brightest metrics_brightest(const struct image *image)
-{
-    struct brightest brightest = {0};
+    bool all_finite = true;
     for (int p = 0; p < image->patch_count; p++)
         for (int i = 0; i < image->patches[p].r_count; i++)
             for (int j = 0; j < image->patches[p].x_count; j++) {
                 const double magnitude = magnitude_of(image, p, i, j);
-                if (magnitude > brightest.magnitude && isfinite(magnitude)) {
+                all_finite = all_finite && isfinite(magnitude);
+                if (magnitude > sharpness->peak && isfinite(magnitude)) {
                     const struct vector place = grid_point(&image->patches[p], i, j);
-                    brightest = (struct brightest){magnitude, place.x, place.y};
+                    sharpness->peak = magnitude;
+                    sharpness->x = place.x;
+                    sharpness->r = place.y;
                 }
             }
-    return brightest;
+    return all_finite;
 }
 
 /* The median by the bits of floats: floats >= 0 sort as their bits do. First the upper half, then the lower one. */
@@ -100,26 +92,24 @@ static uint32_t bucket_find(const struct histogram *histogram, uint64_t *rank)
 struct sharpness metrics_sharpness(const struct image *image)
 {
     static struct histogram histogram;
+    struct sharpness sharpness = {.entropy = NAN, .contrast = NAN, .peak_over_median = NAN};
     struct moments sums = {.histogram = &histogram};
-    struct peak peak = {0, true};
     float median;
-    pixels_visit(image, 1, peak_visit, &peak);
-    if (!(peak.magnitude > 0) || !peak.finite)
-        return (struct sharpness){NAN, NAN, NAN};
+    if (!peak_find(image, &sharpness) || !(sharpness.peak > 0))
+        return sharpness;
     memset(&histogram, 0, sizeof histogram);
     histogram.upper = BUCKETS;
-    pixels_visit(image, peak.magnitude, moments_visit, &sums);
+    pixels_visit(image, sharpness.peak, moments_visit, &sums);
     const double mean = sums.power / sums.count;
     uint64_t rank = (uint64_t)(sums.count / 2);
     const uint32_t upper = bucket_find(&histogram, &rank);
     memset(histogram.counts, 0, sizeof histogram.counts);
     histogram.upper = upper;
-    pixels_visit(image, peak.magnitude, histogram_visit, &histogram);
+    pixels_visit(image, sharpness.peak, histogram_visit, &histogram);
     const uint32_t bits = upper << 16 | bucket_find(&histogram, &rank);
     memcpy(&median, &bits, sizeof median);
-    return (struct sharpness){
-        .entropy = log(sums.power) - sums.power_log / sums.power,
-        .contrast = sqrt(fmax(0, sums.power_squared / sums.count - mean * mean)) / mean,
-        .peak_over_median = median > 0 ? 1 / median : NAN,
-    };
+    sharpness.entropy = log(sums.power) - sums.power_log / sums.power;
+    sharpness.contrast = sqrt(fmax(0, sums.power_squared / sums.count - mean * mean)) / mean;
+    sharpness.peak_over_median = median > 0 ? 1 / median : NAN;
+    return sharpness;
 }
