@@ -15,6 +15,8 @@
 #include "echoes/echo_data.h"
 #include "scene/random.h"
 
+enum { BINS = 16 /* whose phases follow from each other */ };
+
 int pulse_length_lfm(double duration, double fs)
 {
     double length = floor(duration * fs * (1 + 1e-12));
@@ -33,78 +35,11 @@ void pulse_lfm(double bandwidth, double duration, double fs, int length, double 
         pulse[k] = chirp(bandwidth, duration, k / fs);
 }
 
-static double sinc(double z)
-{
-    return fabs(z) < 1e-9 ? 1 : sin(M_PI * z) / (M_PI * z);
-}
-
-/* Sines of the angles off the beam's axis, which lies in the plane across the track but for its squint: of the
-   transmitter at emission, of the receiver at reception, and at the bistatic midpoint of the two. */
-struct angles {
-    double tx, rx, mid;
-};
-
-/* An element has no direction to a point at its own place: it is seen as on the axis, sine 0. `along` counts from
-   the point to the element, backwards. */
-static double sine(const struct acquisition *a, double along, double across)
-{
-    double distance = hypot(along, across);
-    if (a->echo_squint != 0) {
-        const double c = cos(a->echo_squint), s = sin(a->echo_squint), ahead = across * c - along * s;
-        along = along * c + across * s;
-        if (ahead < 0) { /* the beam has no back lobe */
-            return along < 0 ? -1 : 1;
-        }
-    }
-    return distance > 0 ? along / distance : 0;
-}
-
-static struct angles pair_angles(const struct acquisition *a, int ping, int receiver, struct vector p, double tau)
-{
-    struct vector t = a->tx[ping], r = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver];
-    struct vector v = a->velocity[ping];
-    double ut = t.x - p.x, ur = r.x + v.x * tau - p.x, um = (ut + ur) / 2;
-    double across_t = hypot(t.y - p.y, t.z - p.z), across_r = hypot(r.y + v.y * tau - p.y, r.z + v.z * tau - p.z);
-    return (struct angles){sine(a, ut, across_t), sine(a, ur, across_r), sine(a, um, (across_t + across_r) / 2)};
-}
-
-static double angles_weight(const struct scene *scene, const struct angles *angles, double frequency)
-{
-    const struct acquisition *a = &scene->acquisition;
-    const struct beam *beam = &scene->beam;
-    double elements = frequency / a->sound_speed; /* 1/lambda */
-    double tx = a->tx_length * elements * angles->tx, rx = a->rx_length * elements * angles->rx;
-    double edge = beam->limit * (1 + 1e-12); /* an edge met exactly counts as inside */
-    if ((beam->truncation == TRUNCATION_TX && fabs(tx) > edge)
-        || (beam->truncation == TRUNCATION_SINE && fabs(angles->tx) > edge)
-        || (beam->truncation == TRUNCATION_MID && fabs(a->tx_length * elements * angles->mid) > edge)
-        || (beam->truncation == TRUNCATION_DOPPLER
-            && fabs(a->tx_length * elements * (angles->tx + angles->rx) / 2) > edge))
-        return 0;
-    return beam->kind == BEAM_RECT ? 1 : sinc(tx) * sinc(rx);
-}
-
-double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency)
-{
-    struct angles angles = pair_angles(&scene->acquisition, ping, receiver, p, tau);
-    return angles_weight(scene, &angles, frequency);
-}
-
-double beam_sine(const struct scene *scene)
-{
-    const struct acquisition *a = &scene->acquisition;
-    double lowest = scene->beam.per_frequency ? a->fc - a->bandwidth / 2 : a->fc;
-    if (scene->beam.truncation == TRUNCATION_SINE)
-        return scene->beam.limit;
-    if (!(lowest > 0) || scene->beam.truncation == TRUNCATION_NONE)
-        return INFINITY;
-    return scene->beam.limit * a->sound_speed / lowest / a->tx_length;
-}
-
 /* Shared by all pairs: the spectrum to delay, on `length` bins, and the place of the record in its period. */
 struct replica {
     int length, lead;         /* lead: samples before the record, so that echoes that begin before t0 are complete */
     double *frequency;        /* [length] Hz, -fs/2 < f <= fs/2 */
+    double *total;            /* [length] the same plus fc */
     double complex *spectrum; /* [length] scaled for an unnormalised inverse FFT */
     double scale;             /* of amplitudes and noise, a power of two */
     bool nyquist;             /* the last positive bin is fs/2, which stands for both ends of the band */
@@ -116,6 +51,7 @@ static void replica_free(struct replica *replica)
     if (replica->inverse)
         fftw_destroy_plan(replica->inverse);
     free(replica->frequency);
+    free(replica->total);
     fftw_free(replica->spectrum);
     *replica = (struct replica){0};
 }
@@ -145,8 +81,9 @@ static enum status replica_make(const struct scene *scene, struct replica *repli
     int pulse = a->pulse_length, length = transform_length(scene);
     *replica = (struct replica){.length = length, .lead = flat ? 0 : pulse, .nyquist = length % 2 == 0};
     replica->frequency = malloc((size_t)length * sizeof *replica->frequency);
+    replica->total = malloc((size_t)length * sizeof *replica->total);
     replica->spectrum = fftw_malloc((size_t)length * sizeof *replica->spectrum);
-    if (!length || !replica->frequency || !replica->spectrum) {
+    if (!length || !replica->frequency || !replica->total || !replica->spectrum) {
         replica_free(replica);
         return status_set(STATUS_FAILED, "no memory to simulate records of %d samples", a->samples);
     }
@@ -155,6 +92,7 @@ static enum status replica_make(const struct scene *scene, struct replica *repli
     double sum = 0, bin = a->fs / length, half = a->bandwidth / 2;
     for (int k = 0; k < length; k++) {
         double f = replica->frequency[k] = (2 * k > length ? k - length : k) * bin, beyond = fabs(f) - half;
+        replica->total[k] = a->fc + f;
         double weight = fabs(beyond) < 1e-6 * bin ? 0.5 : beyond < 0;
         if (replica->nyquist && 2 * k == length)
             weight *= 2; /* both ends of the band meet here: B = fs keeps the half of each */
@@ -190,7 +128,7 @@ static double complex turn(double cycles)
 
 /* A point as a record has it. */
 struct echo {
-    struct angles angles;
+    struct beam_angles angles;
     double delay;          /* s, from the record's first sample */
     double complex factor; /* of the carrier */
 };
@@ -204,7 +142,7 @@ static bool echo_make(const struct acquisition *a, size_t record, const struct t
     echo->delay = tau - a->t0[ping];
     if (!(echo->delay > -a->pulse_length / a->fs && echo->delay < a->samples / a->fs))
         return false;
-    echo->angles = pair_angles(a, ping, receiver, p, tau);
+    echo->angles = beam_angles(a, ping, receiver, p, tau);
     echo->factor = turn(-a->fc * tau);
     return true;
 }
@@ -216,22 +154,27 @@ static double complex pass_delayed(const struct scene *scene, const struct repli
 {
     const struct acquisition *a = &scene->acquisition;
     const int length = replica->length;
-    const double common = angles_weight(scene, &echo->angles, a->fc), bin = a->fs / length;
-    const double shift = echo->delay + replica->lead / a->fs;
+    const double bin = a->fs / length, shift = echo->delay + replica->lead / a->fs;
+    const bool varies = scene->beam.per_frequency;
     double complex step = turn(-bin * shift), phase = 1, sum = 0;
-    if (common == 0 && !scene->beam.per_frequency)
+    double weight[BINS];
+    beam_weights(scene, &echo->angles, &a->fc, 1, weight);
+    if (weight[0] == 0 && !varies)
         return 0;
+    for (int k = 1; k < BINS; k++)
+        weight[k] = weight[0];
     for (int k = 0; k < length; k++) {
+        const int part = k % BINS;
+        if (part == 0 && varies)
+            beam_weights(scene, &echo->angles, replica->total + k, length - k < BINS ? length - k : BINS, weight);
         double f = replica->frequency[k];
-        phase =
-            k % 16 && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift); /* restart: 1e-15 */
-        double weight = scene->beam.per_frequency ? angles_weight(scene, &echo->angles, a->fc + f) : common;
+        phase = part && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift); /* restart: 1e-15 */
         double complex value = replica->nyquist && 2 * k == length ? cos(2 * M_PI * f * shift) : phase;
         value = product(replica->spectrum[k], value);
         if (adjoint)
-            sum += product(weight * conj(value), spectrum[k]);
+            sum += product(weight[part] * conj(value), spectrum[k]);
         else
-            spectrum[k] += product(weight * amplitude, value);
+            spectrum[k] += product(weight[part] * amplitude, value);
     }
     return sum;
 }
@@ -241,10 +184,12 @@ static double complex pass_sampled(const struct scene *scene, const struct echo 
                                    double complex amplitude, double complex *record)
 {
     const struct acquisition *a = &scene->acquisition;
-    const double weight = angles_weight(scene, &echo->angles, a->fc), delay = echo->delay;
+    const double delay = echo->delay;
     const int first = (int)fmax(0, ceil(delay * a->fs)),
               end = (int)fmin(a->samples, ceil((delay + scene->pulse_duration) * a->fs));
     double complex sum = 0;
+    double weight;
+    beam_weights(scene, &echo->angles, &a->fc, 1, &weight);
     for (int n = first; n < end; n++) {
         const double complex value = chirp(a->bandwidth, scene->pulse_duration, n / a->fs - delay);
         if (adjoint)

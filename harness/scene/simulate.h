@@ -31,7 +31,18 @@ enum status scene_echoes(const struct scene *scene, struct echoes *echoes);
 int pulse_length_lfm(double duration, double fs);
 void pulse_lfm(double bandwidth, double duration, double fs, int length, double complex *pulse);
 
-/* Amplitude of a pair's echo from target point p at total frequency F (Hz), tau = the exact delay. */
+/* Sines of the angles off the beam's axis, which lies in the plane across the track but for its squint: of the
+   transmitter at emission, of the receiver at reception, and at the bistatic midpoint of the two. tau: the exact delay,
+   s, of target point p. */
+struct beam_angles {
+    double tx, rx, mid;
+};
+struct beam_angles beam_angles(const struct acquisition *a, int ping, int receiver, struct vector p, double tau);
+
+/* weight [count]: amplitude of a pair's echo at total frequencies, Hz [count], by the scene's beam. */
+void beam_weights(const struct scene *scene, const struct beam_angles *angles, const double *frequency, int count,
+                  double *weight);
+/* The same of one pair and frequency. */
 double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency);
 
 /* |sin theta_t| up to which the scene's beam sees targets, by its truncation; INFINITY without a bound. */
