@@ -52,7 +52,7 @@ static double edge_slope(const struct scene *scene, const struct beam_angles *an
     }
 }
 
-void beam_weights(const struct scene *scene, const struct beam_angles *angles, const double *frequency, int count,
+void beam_weights(const struct scene *scene, const struct beam_angles *angles, const double *offset, int count,
                   double *weight)
 {
     const struct acquisition *a = &scene->acquisition;
@@ -63,7 +63,7 @@ void beam_weights(const struct scene *scene, const struct beam_angles *angles, c
     const double slope = edge_slope(scene, angles);
     bool any = false;
     for (int k = 0; k < count; k++) {
-        const double f = fabs(frequency[k]);
+        const double f = fabs(a->fc + offset[k]);
         const bool inside = beam->truncation == TRUNCATION_SINE ? fabs(angles->tx) <= edge : slope * f <= edge;
         weight[k] = inside || beam->truncation == TRUNCATION_NONE;
         any = any || weight[k] > 0;
@@ -72,7 +72,7 @@ void beam_weights(const struct scene *scene, const struct beam_angles *angles, c
         return;
 #pragma omp simd
     for (int k = 0; k < count; k++) {
-        const double f = fabs(frequency[k]);
+        const double f = fabs(a->fc + offset[k]);
         double tx_over, tx_under, rx_over, rx_under;
         sinc(tx * f, &tx_over, &tx_under);
         sinc(rx * f, &rx_over, &rx_under);
@@ -83,8 +83,9 @@ void beam_weights(const struct scene *scene, const struct beam_angles *angles, c
 double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency)
 {
     const struct beam_angles angles = beam_angles(&scene->acquisition, ping, receiver, p, tau);
+    const double offset = frequency - scene->acquisition.fc;
     double weight;
-    beam_weights(scene, &angles, &frequency, 1, &weight);
+    beam_weights(scene, &angles, &offset, 1, &weight);
     return weight;
 }
 

@@ -39,7 +39,6 @@ void pulse_lfm(double bandwidth, double duration, double fs, int length, double 
 struct replica {
     int length, lead;         /* lead: samples before the record, so that echoes that begin before t0 are complete */
     double *frequency;        /* [length] Hz, -fs/2 < f <= fs/2 */
-    double *total;            /* [length] the same plus fc */
     double complex *spectrum; /* [length] scaled for an unnormalised inverse FFT */
     double scale;             /* of amplitudes and noise, a power of two */
     bool nyquist;             /* the last positive bin is fs/2, which stands for both ends of the band */
@@ -51,7 +50,6 @@ static void replica_free(struct replica *replica)
     if (replica->inverse)
         fftw_destroy_plan(replica->inverse);
     free(replica->frequency);
-    free(replica->total);
     fftw_free(replica->spectrum);
     *replica = (struct replica){0};
 }
@@ -81,9 +79,8 @@ static enum status replica_make(const struct scene *scene, struct replica *repli
     int pulse = a->pulse_length, length = transform_length(scene);
     *replica = (struct replica){.length = length, .lead = flat ? 0 : pulse, .nyquist = length % 2 == 0};
     replica->frequency = malloc((size_t)length * sizeof *replica->frequency);
-    replica->total = malloc((size_t)length * sizeof *replica->total);
     replica->spectrum = fftw_malloc((size_t)length * sizeof *replica->spectrum);
-    if (!length || !replica->frequency || !replica->total || !replica->spectrum) {
+    if (!length || !replica->frequency || !replica->spectrum) {
         replica_free(replica);
         return status_set(STATUS_FAILED, "no memory to simulate records of %d samples", a->samples);
     }
@@ -92,7 +89,6 @@ static enum status replica_make(const struct scene *scene, struct replica *repli
     double sum = 0, bin = a->fs / length, half = a->bandwidth / 2;
     for (int k = 0; k < length; k++) {
         double f = replica->frequency[k] = (2 * k > length ? k - length : k) * bin, beyond = fabs(f) - half;
-        replica->total[k] = a->fc + f;
         double weight = fabs(beyond) < 1e-6 * bin ? 0.5 : beyond < 0;
         if (replica->nyquist && 2 * k == length)
             weight *= 2; /* both ends of the band meet here: B = fs keeps the half of each */
@@ -126,6 +122,8 @@ static double complex turn(double cycles)
     return __builtin_complex(cos(angle), sin(angle)); /* CMPLX, which clang 14 lacks */
 }
 
+static const double carrier = 0; /* Hz from itself */
+
 /* A point as a record has it. */
 struct echo {
     struct beam_angles angles;
@@ -158,7 +156,7 @@ static double complex pass_delayed(const struct scene *scene, const struct repli
     const bool varies = scene->beam.per_frequency;
     double complex step = turn(-bin * shift), phase = 1, sum = 0;
     double weight[BINS];
-    beam_weights(scene, &echo->angles, &a->fc, 1, weight);
+    beam_weights(scene, &echo->angles, &carrier, 1, weight);
     if (weight[0] == 0 && !varies)
         return 0;
     for (int k = 1; k < BINS; k++)
@@ -166,7 +164,7 @@ static double complex pass_delayed(const struct scene *scene, const struct repli
     for (int k = 0; k < length; k++) {
         const int part = k % BINS;
         if (part == 0 && varies)
-            beam_weights(scene, &echo->angles, replica->total + k, length - k < BINS ? length - k : BINS, weight);
+            beam_weights(scene, &echo->angles, replica->frequency + k, length - k < BINS ? length - k : BINS, weight);
         double f = replica->frequency[k];
         phase = part && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift); /* restart: 1e-15 */
         double complex value = replica->nyquist && 2 * k == length ? cos(2 * M_PI * f * shift) : phase;
@@ -189,7 +187,7 @@ static double complex pass_sampled(const struct scene *scene, const struct echo 
               end = (int)fmin(a->samples, ceil((delay + scene->pulse_duration) * a->fs));
     double complex sum = 0;
     double weight;
-    beam_weights(scene, &echo->angles, &a->fc, 1, &weight);
+    beam_weights(scene, &echo->angles, &carrier, 1, &weight);
     for (int n = first; n < end; n++) {
         const double complex value = chirp(a->bandwidth, scene->pulse_duration, n / a->fs - delay);
         if (adjoint)

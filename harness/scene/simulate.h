@@ -39,10 +39,11 @@ struct beam_angles {
 };
 struct beam_angles beam_angles(const struct acquisition *a, int ping, int receiver, struct vector p, double tau);
 
-/* weight [count]: amplitude of a pair's echo at total frequencies, Hz [count], by the scene's beam. */
-void beam_weights(const struct scene *scene, const struct beam_angles *angles, const double *frequency, int count,
+/* weight [count]: amplitude of a pair's echo at frequencies `offset`, Hz from the carrier [count], by the scene's
+   beam. */
+void beam_weights(const struct scene *scene, const struct beam_angles *angles, const double *offset, int count,
                   double *weight);
-/* The same of one pair and frequency. */
+/* The same of one pair at total frequency F (Hz). */
 double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency);
 
 /* |sin theta_t| up to which the scene's beam sees targets, by its truncation; INFINITY without a bound. */

@@ -20,21 +20,21 @@ static double receivers_apart(const struct acquisition *a, int ping)
     return most;
 }
 
-/* Bounds of the delays between a box of pixels, (x, r) to (x + width, r + depth), and a ping, by the nearest and the
-   furthest place: a path is twice the transmitter's distance, up to the receiver's distance from the transmitter:
+/* Bounds of the delays between a box of pixels, (x, r) to (x + width, r + depth), which are at least `least` m away, and
+   a ping, by the nearest and the furthest place: a path is twice the transmitter's distance, up to the receiver's distance from the transmitter:
    `apart` m, and its motion since emission. */
 struct delay_bounds {
     double least, most; /* s */
 };
 
 static struct delay_bounds box_delays(const struct acquisition *a, int ping, double apart, struct vector first,
-                                      double width, double depth)
+                                      double width, double depth, double least)
 {
     const struct vector tx = a->tx[ping], v = a->velocity[ping];
     const double x = first.x - tx.x, r = first.y - tx.y, end_x = x + width, end_r = r + depth;
     const double near_x = x > 0 ? x : fmin(end_x, 0), near_r = r > 0 ? r : fmin(end_r, 0);
     const double far_x = fmax(fabs(x), fabs(end_x)), far_r = fmax(fabs(r), fabs(end_r));
-    const double near = sqrt(near_x * near_x + near_r * near_r + tx.z * tx.z);
+    const double near = fmax(least, sqrt(near_x * near_x + near_r * near_r + tx.z * tx.z));
     const double far = sqrt(far_x * far_x + far_r * far_r + tx.z * tx.z),
                  speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
     return (struct delay_bounds){(2 * near - apart) / (a->sound_speed + speed),
@@ -45,7 +45,7 @@ static struct delay_bounds line_delays(const struct acquisition *a, int ping, do
                                        const struct pixel_line *line)
 {
     const double length = line->count - 1.0;
-    return box_delays(a, ping, apart, line_pixel(line, 0), length * line->x_step, length * line->r_step);
+    return box_delays(a, ping, apart, line_pixel(line, 0), length * line->x_step, length * line->r_step, 0);
 }
 
 /* May any delay lie inside a ping's records? */
@@ -106,13 +106,11 @@ static double aperture_edge(const struct acquisition *a, double beside)
    the normal over the limit away. */
 static bool grid_reached(const struct acquisition *a, int ping, double apart, const struct grid *grid)
 {
-    const struct vector v = a->velocity[ping];
     const struct seen seen = grid_seen(grid, a->tx[ping], acquisition_normal(a, ping));
     const double near = seen.nearest > 0 ? seen.nearest / fmin(a->aperture_limit, 1) : 0;
-    const double speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    struct delay_bounds delays = box_delays(a, ping, apart, (struct vector){grid->x_first, grid->r_first, 0},
-                                            (grid->x_count - 1) * grid->x_step, (grid->r_count - 1) * grid->r_step);
-    delays.least = fmax(delays.least, (2 * near - apart) / (a->sound_speed + speed));
+    const struct delay_bounds delays =
+        box_delays(a, ping, apart, (struct vector){grid->x_first, grid->r_first, 0}, (grid->x_count - 1) * grid->x_step,
+                   (grid->r_count - 1) * grid->r_step, near);
     return !(seen.nearest > (1 + 1e-6) * aperture_edge(a, seen.beside) + 1e-9 * seen.along)
            && record_reached(a, ping, delays);
 }

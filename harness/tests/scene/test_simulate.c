@@ -22,7 +22,7 @@ static struct echoes echoes_of(const char *find, const char *replace, double std
     return echoes;
 }
 
-/* The beam's weights by their definition, at many frequencies at once: on the axis, beside it, far beyond any
+/* The beam's weights by their definition, at many frequencies at once, from a carrier of 0: on the axis, beside it, far beyond any
    aperture, and where the arguments are not finite. */
 static void weights_by_definition(void **state)
 {
@@ -30,28 +30,27 @@ static void weights_by_definition(void **state)
     enum { COUNT = 37 };
     const struct scene scene = {.acquisition = {.sound_speed = 1500, .tx_length = 0.5, .rx_length = 0.3},
                                 .beam = {.kind = BEAM_TXRX, .truncation = TRUNCATION_NONE, .limit = NAN}};
-    double frequency[COUNT], weight[COUNT], worst = 0;
+    double offset[COUNT], weight[COUNT], worst = 0;
     for (double sine = 1e-15; sine < 1; sine *= 7)
         for (double scale = 1; scale < 1e7; scale *= 100) {
             const struct beam_angles angles = {sine, -0.5 * sine, 0};
             for (int k = 0; k < COUNT; k++)
-                frequency[k] = scale * (20e3 + 700.0 * k) * (k % 2 ? 1 : -1);
-            beam_weights(&scene, &angles, frequency, COUNT, weight);
+                offset[k] = scale * (20e3 + 700.0 * k) * (k % 2 ? 1 : -1);
+            beam_weights(&scene, &angles, offset, COUNT, weight);
             for (int k = 0; k < COUNT; k++) {
-                const double tx = M_PI * frequency[k] / 1500 * 0.5 * sine,
-                             rx = M_PI * frequency[k] / 1500 * 0.15 * sine;
+                const double tx = M_PI * offset[k] / 1500 * 0.5 * sine, rx = M_PI * offset[k] / 1500 * 0.15 * sine;
                 worst = fmax(worst, fabs(weight[k] - sin(tx) / tx * sin(rx) / rx));
             }
         }
     print_message("weights within %.1e\n", worst);
     assert_true(worst < 2e-15);
     const struct beam_angles axis = {0, 0, 0}, beside = {1, 1, 1};
-    frequency[0] = 0;
-    frequency[1] = 1e300;
-    frequency[2] = INFINITY;
-    beam_weights(&scene, &axis, frequency, 2, weight);
+    offset[0] = 0;
+    offset[1] = 1e300;
+    offset[2] = INFINITY;
+    beam_weights(&scene, &axis, offset, 2, weight);
     assert_true(weight[0] == 1 && weight[1] == 1);
-    beam_weights(&scene, &beside, frequency, 3, weight);
+    beam_weights(&scene, &beside, offset, 3, weight);
     assert_true(weight[0] == 1 && weight[1] == 0 && weight[2] == 0);
 }
 
