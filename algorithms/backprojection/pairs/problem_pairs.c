@@ -20,9 +20,9 @@ static double receivers_apart(const struct acquisition *a, int ping)
     return most;
 }
 
-/* Bounds of the delays between a box of pixels, (x, r) to (x + width, r + depth), which are at least `least` m away, and
-   a ping, by the nearest and the furthest place: a path is twice the transmitter's distance, up to the receiver's distance from the transmitter:
-   `apart` m, and its motion since emission. */
+/* Bounds of the delays between a box of pixels, (x, r) to (x + width, r + depth), at least `least` m away, and a ping,
+   by the nearest and the furthest place: a path is twice the transmitter's distance, up to the receiver's distance from
+   the transmitter: `apart` m, and its motion since emission. */
 struct delay_bounds {
     double least, most; /* s */
 };

@@ -22,8 +22,8 @@ static struct echoes echoes_of(const char *find, const char *replace, double std
     return echoes;
 }
 
-/* The beam's weights by their definition, at many frequencies at once, from a carrier of 0: on the axis, beside it, far beyond any
-   aperture, and where the arguments are not finite. */
+/* The beam's weights by their definition, at many frequencies at once, from a carrier of 0: on the axis, beside it, far
+   beyond any aperture, and where the arguments are not finite. */
 static void weights_by_definition(void **state)
 {
     (void)state;
