@@ -80,15 +80,6 @@ void beam_weights(const struct scene *scene, const struct beam_angles *angles, c
     }
 }
 
-double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency)
-{
-    const struct beam_angles angles = beam_angles(&scene->acquisition, ping, receiver, p, tau);
-    const double offset = frequency - scene->acquisition.fc;
-    double weight;
-    beam_weights(scene, &angles, &offset, 1, &weight);
-    return weight;
-}
-
 double beam_sine(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;

@@ -43,9 +43,6 @@ struct beam_angles beam_angles(const struct acquisition *a, int ping, int receiv
    beam. */
 void beam_weights(const struct scene *scene, const struct beam_angles *angles, const double *offset, int count,
                   double *weight);
-/* The same of one pair at total frequency F (Hz). */
-double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency);
-
 /* |sin theta_t| up to which the scene's beam sees targets, by its truncation; INFINITY without a bound. */
 double beam_sine(const struct scene *scene);
 

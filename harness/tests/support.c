@@ -294,3 +294,13 @@ enum status image_file_read(const char *path, struct grid *grid, double complex 
     image_file_close(&file);
     return STATUS_OK;
 }
+
+double support_beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau,
+                           double frequency)
+{
+    const struct beam_angles angles = beam_angles(&scene->acquisition, ping, receiver, p, tau);
+    const double offset = frequency - scene->acquisition.fc;
+    double weight;
+    beam_weights(scene, &angles, &offset, 1, &weight);
+    return weight;
+}

@@ -65,4 +65,8 @@ int support_shell(const char *lines);
 /* The same; the test fails on any other status than the wanted one. */
 void assert_shell(const char *lines, int wanted);
 
+/* Amplitude of a pair's echo from target point p at total frequency F (Hz), tau = the exact delay. */
+double support_beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau,
+                           double frequency);
+
 #endif

@@ -45,7 +45,7 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
         for (int t = 0; t < scene->target_count; t++) {
             struct vector at = {scene->targets[t].x, scene->targets[t].r, 0};
             double tau = delay_exact(a->tx[p / a->receivers], a->rx[p], a->velocity[0], at, a->sound_speed);
-            double weight = beam_weight(scene, p / a->receivers, p % a->receivers, at, tau, a->fc);
+            double weight = support_beam_weight(scene, p / a->receivers, p % a->receivers, at, tau, a->fc);
             for (int k = 0; k < count; k++) {
                 double u = a->t0[0] + k / a->fs - tau;
                 if (fabs(u) <= duration / 2)

@@ -28,7 +28,7 @@ static void check_coverage(const struct scene *scene)
             for (int m = 0; m < a->receivers; m++) {
                 double tau =
                     delay_exact(a->tx[ping], a->rx[ping * a->receivers + m], a->velocity[ping], p, a->sound_speed);
-                if (beam_weight(scene, ping, m, p, tau, widest_hz) == 0) {
+                if (support_beam_weight(scene, ping, m, p, tau, widest_hz) == 0) {
                     continue;
                 }
                 seen++;
@@ -91,14 +91,14 @@ static void reference_scenes_have_the_reference_geometry(void **state)
         int active = 0;
         for (int k = 0; k < a->pings * a->receivers; k++) {
             double tau = delay_exact(a->tx[k / a->receivers], a->rx[k], a->velocity[0], p, a->sound_speed);
-            active += beam_weight(&scene, k / a->receivers, k % a->receivers, p, tau, a->fc) != 0;
+            active += support_beam_weight(&scene, k / a->receivers, k % a->receivers, p, tau, a->fc) != 0;
         }
         assert_int_equal(active, active_pairs[i]);
         for (int k = 0; k < 3; k++) {
             int ping = expected->delays[k].ping, m = expected->delays[k].receiver;
             double tau = delay_exact(a->tx[ping], a->rx[ping * a->receivers + m], a->velocity[ping], p, a->sound_speed);
             assert_true(fabs(tau - expected->delays[k].tau) < 1e-12);
-            assert_true(fabs(beam_weight(&scene, ping, m, p, tau, a->fc) - expected->delays[k].weight) < 1e-12);
+            assert_true(fabs(support_beam_weight(&scene, ping, m, p, tau, a->fc) - expected->delays[k].weight) < 1e-12);
         }
         scene_free(&scene);
     }

@@ -67,7 +67,7 @@ static void sampled_chirps_are_weighted(void **state)
         const int ping = k / a->receivers;
         const struct vector p = {scene.targets[0].x, scene.targets[0].r, 0};
         const double tau = delay_exact(a->tx[ping], a->rx[k], a->velocity[ping], p, a->sound_speed);
-        const double weight = beam_weight(&scene, ping, k % a->receivers, p, tau, a->fc);
+        const double weight = support_beam_weight(&scene, ping, k % a->receivers, p, tau, a->fc);
         least = fmin(least, weight);
         greatest = fmax(greatest, weight);
         for (int n = 0; n < a->samples; n++) {
