@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "common/clock.h"
+#include "common/memory.h"
 #include "echoes/echo_data.h"
 #include "files/paths.h"
 #include "imaging/imaging.h"
@@ -305,6 +306,14 @@ static enum status dense_make(struct bench *bench)
     return STATUS_OK;
 }
 
+static enum status zeros_make(const struct acquisition *a, enum precision precision, struct echoes *echoes)
+{
+    const enum status status = echoes_allocate(a, precision, echoes);
+    if (status == STATUS_OK)
+        memory_clear((void *)echoes->samples, acquisition_samples(a) * precision_size(precision));
+    return status;
+}
+
 enum status machine_rates_measure(struct rates *rates)
 {
     struct bench bench = {.echoes = {{0}, {0}}};
@@ -327,7 +336,7 @@ enum status machine_rates_measure(struct rates *rates)
     bench.steep.r_step *= 1.25; /* samples */
     status = dense_make(&bench);
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++)
-        status = echoes_allocate(&bench.scene.acquisition, (enum precision)precision, &bench.echoes[precision]);
+        status = zeros_make(&bench.scene.acquisition, (enum precision)precision, &bench.echoes[precision]);
     omp_set_num_threads(1); /* its time of waiting for a processor is measured */
     seconds_skip_waiting();
     if (status == STATUS_OK)

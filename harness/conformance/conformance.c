@@ -93,9 +93,8 @@ void conformance_execute(const struct conformance *c, const char *place, void *p
 {
     struct echoes converted, given;
     struct stages stages;
-    const struct acquisition *a = problem->acquisition;
     const size_t size = precision_size(problem->precision);
-    const size_t bytes = size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, size);
+    const size_t bytes = acquisition_samples(problem->acquisition) * size;
     conformance_need(c, echoes_convert(echoes, problem->precision, &converted));
     given = converted;
     given.acquisition = problem->acquisition;

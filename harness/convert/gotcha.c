@@ -168,7 +168,8 @@ static enum status gotcha_fill(const char *const *paths, int count, const struct
         status = file_read(paths[k], true, v, &own);
         if (status != STATUS_OK)
             break;
-        if (own.count != steps->count || v[FP].dims[1] > (size_t)(a->pings - first))
+        const size_t pulses = v[FP].dims[1], left = (size_t)(a->pings - first);
+        if (own.count != steps->count || (k + 1 < count ? pulses > left : pulses != left))
             status = status_set(STATUS_INVALID, "%s: has been replaced meanwhile", paths[k]);
         else
             pulses_fill(v, steps, &band, first, a, samples);

@@ -8,6 +8,8 @@
 
 #include "common/memory.h"
 
+enum { LINE = 64 /* bytes of the cache's */, FEW = 1 << 16 /* numbers, that one thread handles */ };
+
 static const struct {
     const char *name;
     size_t size;
@@ -26,6 +28,11 @@ const char *precision_name(enum precision precision)
     return precisions[precision].name;
 }
 
+size_t acquisition_samples(const struct acquisition *acquisition)
+{
+    return (size_t)acquisition->pings * (size_t)acquisition->receivers * (size_t)acquisition->samples;
+}
+
 size_t size_product(size_t a, size_t b, size_t c, size_t d)
 {
     size_t product;
@@ -36,19 +43,15 @@ size_t size_product(size_t a, size_t b, size_t c, size_t d)
     return product;
 }
 
-/* Zeroed memory for `size` bytes (0: a size that overflowed) at a cache line; NULL without memory. */
-static void *allocate_zeroed(size_t size)
+/* NULL for a size of 0, one that overflowed. */
+static void *allocate(size_t size)
 {
-    const size_t line = 64;
-    if (size == 0 || size > PTRDIFF_MAX - line) {
-        return NULL;
-    }
-    size_t whole_lines = (size + line - 1) / line * line;
-    void *memory = aligned_alloc(line, whole_lines);
-    if (memory) {
-        memory_clear(memory, whole_lines);
-    }
-    return memory;
+    return size > 0 && size <= PTRDIFF_MAX - LINE ? memory_columns(LINE, size) : NULL;
+}
+
+static size_t pixel_count(const struct grid *patch)
+{
+    return (size_t)patch->r_count * (size_t)patch->x_count;
 }
 
 static double complex number_at(const void *numbers, enum precision precision, size_t index)
@@ -61,8 +64,7 @@ static double complex number_at(const void *numbers, enum precision precision, s
 static void numbers_copy(const void *from, enum precision from_precision, int exponent, void *to,
                          enum precision precision, size_t count)
 {
-    const size_t few = 1 << 16;
-#pragma omp parallel for if (count > few)
+#pragma omp parallel for if (count > FEW)
     for (size_t i = 0; i < count; i++) {
         double complex z = number_at(from, from_precision, i);
         if (exponent != 0)
@@ -74,12 +76,30 @@ static void numbers_copy(const void *from, enum precision from_precision, int ex
     }
 }
 
-double largest_part(const double complex *numbers, size_t count)
+/* Bits of the magnitude of a part: they are ordered as the magnitudes are, and above all finite ones for others. */
+static uint64_t magnitude_bits(const void *parts, enum precision precision, size_t i)
 {
-    double largest = 0;
-    for (size_t i = 0; i < count; i++)
-        largest = fmax(largest, fmax(fabs(creal(numbers[i])), fabs(cimag(numbers[i]))));
-    return largest;
+    uint32_t single;
+    uint64_t both;
+    if (precision == PRECISION_DOUBLE) {
+        memcpy(&both, (const char *)parts + i * sizeof both, sizeof both);
+        return both & INT64_MAX;
+    }
+    memcpy(&single, (const char *)parts + i * sizeof single, sizeof single);
+    return single & INT32_MAX;
+}
+
+double largest_part(const void *numbers, enum precision precision, size_t count)
+{
+    uint64_t most = 0;
+    float single;
+    double both;
+#pragma omp parallel for reduction(max : most) if (count > FEW)
+    for (size_t i = 0; i < 2 * count; i++)
+        most = magnitude_bits(numbers, precision, i) > most ? magnitude_bits(numbers, precision, i) : most;
+    memcpy(&both, &most, sizeof both);
+    memcpy(&single, &(uint32_t){(uint32_t)most}, sizeof single);
+    return precision == PRECISION_DOUBLE ? both : single;
 }
 
 enum status echoes_allocate(const struct acquisition *acquisition, enum precision precision, struct echoes *echoes)
@@ -91,7 +111,7 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
     if (room != STATUS_OK) {
         return room;
     }
-    *echoes = (struct echoes){acquisition, precision, allocate_zeroed(size), 0};
+    *echoes = (struct echoes){acquisition, precision, allocate(size), 0};
     if (!echoes->samples) {
         return status_set(STATUS_FAILED, "out of memory for %d samples x %d receivers x %d pings", acquisition->samples,
                           acquisition->receivers, acquisition->pings);
@@ -115,9 +135,10 @@ enum status echoes_convert(const struct echoes *from, enum precision precision, 
     const struct acquisition *acquisition = from->acquisition;
     enum status status = echoes_allocate(acquisition, precision, to);
     if (status == STATUS_OK) {
-        size_t count = (size_t)acquisition->pings * (size_t)acquisition->receivers * (size_t)acquisition->samples;
-        int exponent =
-            from->precision == PRECISION_DOUBLE ? range_exponent(largest_part(from->samples, count), precision) : 0;
+        const size_t count = acquisition_samples(acquisition);
+        int exponent = from->precision == PRECISION_DOUBLE
+                           ? range_exponent(largest_part(from->samples, from->precision, count), precision)
+                           : 0;
         numbers_copy(from->samples, from->precision, -exponent, (void *)to->samples, precision, count);
         to->exponent = from->exponent + exponent;
     }
@@ -143,15 +164,13 @@ static void negate(void *numbers, size_t count, enum precision precision)
 
 void echoes_negate(struct echoes *echoes)
 {
-    const struct acquisition *a = echoes->acquisition;
-    negate((void *)echoes->samples, (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples, echoes->precision);
+    negate((void *)echoes->samples, acquisition_samples(echoes->acquisition), echoes->precision);
 }
 
 void image_negate(struct image *image)
 {
     for (int k = 0; k < image->patch_count; k++)
-        negate(image->pixels[k], (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count,
-               image->precision);
+        negate(image->pixels[k], pixel_count(&image->patches[k]), image->precision);
 }
 
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image)
@@ -167,14 +186,16 @@ enum status image_allocate(int patch_count, const struct grid *patches, enum pre
     }
     *image = (struct image){patch_count, patches, precision, calloc((size_t)patch_count, sizeof *image->pixels)};
     for (int i = 0; image->pixels && i < patch_count; i++) {
-        image->pixels[i] = allocate_zeroed(
-            size_product((size_t)patches[i].r_count, (size_t)patches[i].x_count, 1, precision_size(precision)));
+        const size_t size =
+            size_product((size_t)patches[i].r_count, (size_t)patches[i].x_count, 1, precision_size(precision));
+        image->pixels[i] = allocate(size);
         if (!image->pixels[i]) {
             enum status status = status_set(STATUS_FAILED, "out of memory for an image of %d x %d pixels",
                                             patches[i].r_count, patches[i].x_count);
             image_free(image);
             return status;
         }
+        memory_clear(image->pixels[i], size);
     }
     return image->pixels ? STATUS_OK : status_set(STATUS_FAILED, "out of memory for %d image patches", patch_count);
 }
@@ -188,8 +209,8 @@ enum status image_scale(struct image *image, int exponent)
     if (status != STATUS_OK)
         return status;
     for (int i = 0; i < image->patch_count; i++) {
-        const size_t count = (size_t)image->patches[i].r_count * (size_t)image->patches[i].x_count;
-        numbers_copy(image->pixels[i], image->precision, exponent, scaled.pixels[i], PRECISION_DOUBLE, count);
+        numbers_copy(image->pixels[i], image->precision, exponent, scaled.pixels[i], PRECISION_DOUBLE,
+                     pixel_count(&image->patches[i]));
     }
     image_free(image);
     *image = scaled;
@@ -213,12 +234,8 @@ double complex image_pixel(const struct image *image, int patch, int i, int j)
 
 bool image_is_finite(const struct image *image)
 {
+    bool finite = true;
     for (int k = 0; k < image->patch_count; k++)
-        for (int i = 0; i < image->patches[k].r_count; i++)
-            for (int j = 0; j < image->patches[k].x_count; j++) {
-                double complex value = image_pixel(image, k, i, j);
-                if (!isfinite(creal(value)) || !isfinite(cimag(value)))
-                    return false;
-            }
-    return true;
+        finite = finite && isfinite(largest_part(image->pixels[k], image->precision, pixel_count(&image->patches[k])));
+    return finite;
 }

@@ -8,10 +8,13 @@
 size_t precision_size(enum precision precision);
 const char *precision_name(enum precision precision); /* "float", "double" */
 
+/* Samples of all records together; the acquisition was checked to fit into memory. */
+size_t acquisition_samples(const struct acquisition *acquisition);
+
 /* a * b * c * d bytes, or 0 if that overflows size_t. */
 size_t size_product(size_t a, size_t b, size_t c, size_t d);
 
-/* Allocate zeroed samples for an acquisition, owned by the caller (free(): the samples pointer is malloc'ed and
+/* Allocate samples for an acquisition, of any values, owned by the caller (free(): the samples pointer is malloc'ed and
    64-byte aligned). Errors: STATUS_FAILED without memory. */
 enum status echoes_allocate(const struct acquisition *acquisition, enum precision precision, struct echoes *echoes);
 /* A copy in the other precision, same ownership. If the largest sample lies near the ends of the precision's range,
@@ -29,8 +32,8 @@ enum status image_allocate(int patch_count, const struct grid *patches, enum pre
 enum status image_scale(struct image *image, int exponent);
 void image_free(struct image *image);
 
-/* The largest magnitude of a real or imaginary part. */
-double largest_part(const double complex *numbers, size_t count);
+/* The largest magnitude of a real or imaginary part of complex numbers; infinite or NaN where one is. */
+double largest_part(const void *numbers, enum precision precision, size_t count);
 
 /* False if any pixel is infinite or not a number: such a result must not be shown. */
 bool image_is_finite(const struct image *image);

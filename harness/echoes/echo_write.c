@@ -87,7 +87,7 @@ void acquisition_write(struct writer *writer, const struct acquisition *a, const
 
 static size_t samples_bytes(const struct acquisition *a, enum precision precision)
 {
-    return (size_t)a->samples * (size_t)a->receivers * (size_t)a->pings * precision_size(precision);
+    return acquisition_samples(a) * precision_size(precision);
 }
 
 static enum status begin(struct writer *writer, const char *path, const struct acquisition *a, size_t bytes)

@@ -246,7 +246,7 @@ static enum status normalise_pulse(const char *path, const struct variable *v, i
 {
     const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};
     size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
-    const double largest = largest_part(v[PULSE].values, pulse_count);
+    const double largest = largest_part(v[PULSE].values, PRECISION_DOUBLE, pulse_count);
     *exponent = 0;
     if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20))
         return STATUS_OK;

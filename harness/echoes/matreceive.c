@@ -7,7 +7,6 @@
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -45,32 +44,6 @@ static bool read_fully(int descriptor, void *data, size_t size)
         }
     }
     return true;
-}
-
-/* Bits of the magnitude of a part: they are ordered as the magnitudes are, and above all finite ones for others. */
-static uint64_t magnitude_bits(const void *parts, enum precision precision, size_t i)
-{
-    uint32_t single;
-    uint64_t both;
-    if (precision == PRECISION_DOUBLE) {
-        memcpy(&both, (const char *)parts + i * sizeof both, sizeof both);
-        return both & INT64_MAX;
-    }
-    memcpy(&single, (const char *)parts + i * sizeof single, sizeof single);
-    return single & INT32_MAX;
-}
-
-/* The largest magnitude of a part; infinite or NaN where one is. */
-static double largest_of(const void *parts, enum precision precision, size_t count)
-{
-    uint64_t most = 0;
-    float single;
-    double both;
-    for (size_t i = 0; i < count; i++)
-        most = magnitude_bits(parts, precision, i) > most ? magnitude_bits(parts, precision, i) : most;
-    memcpy(&both, &most, sizeof both);
-    memcpy(&single, &(uint32_t){(uint32_t)most}, sizeof single);
-    return precision == PRECISION_DOUBLE ? both : single;
 }
 
 enum { BLOCK = 1 << 14 }; /* numbers received at a time */
@@ -115,7 +88,7 @@ static enum status receive_pings(const char *path, const struct pings *pings, co
             most = end - at < BLOCK ? end - at : BLOCK;
             if (!read_fully(descriptor, block, most * size))
                 return reader_crashed(path);
-            const double largest = largest_of(block, packet->precision, 2 * most);
+            const double largest = largest_part(block, packet->precision, most);
             if (!isfinite(largest))
                 return not_finite(path, packet, at, block);
             block_put(pings, at, block, packet->precision, most);

@@ -156,7 +156,7 @@ enum status noise_measure(const struct echoes *echoes, double *share)
     fftw_complex *record = fftw_malloc(samples * sizeof *record);
     fftw_plan plan = record ? fftw_plan_dft_1d(a->samples, record, record, FFTW_FORWARD, FFTW_ESTIMATE) : NULL;
     for (int n = 0; n < count; n++)
-        most = fmax(most, largest_part(records[n], samples));
+        most = fmax(most, largest_part(records[n], PRECISION_DOUBLE, samples));
     for (int n = 0; n < count && plan && most > 0; n++)
         record_add(records[n], most, a->samples, expected.first, plan, record, &sum);
     if (plan)

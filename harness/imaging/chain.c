@@ -71,9 +71,7 @@ static enum status link_echoes(struct link *link, enum precision precision)
     const enum status status = echoes_allocate(&link->acquisition, precision, &link->echoes);
     if (status != STATUS_OK)
         return status;
-    const size_t count = (size_t)link->acquisition.pings * (size_t)link->acquisition.receivers
-                         * (size_t)link->acquisition.samples * precision_size(precision);
-    memset((void *)link->echoes.samples, 0xff, count);
+    memset((void *)link->echoes.samples, 0xff, acquisition_samples(&link->acquisition) * precision_size(precision));
     return STATUS_OK;
 }
 
@@ -215,14 +213,7 @@ static enum status move(struct chain_plan *plan, int k, struct stages *stages)
 
 static bool echoes_are_finite(const struct echoes *echoes)
 {
-    const struct acquisition *a = echoes->acquisition;
-    const size_t count = 2 * (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
-    const float *single = echoes->samples;
-    const double *both = echoes->samples;
-    for (size_t n = 0; n < count; n++)
-        if (!isfinite(echoes->precision == PRECISION_FLOAT ? (double)single[n] : both[n]))
-            return false;
-    return true;
+    return isfinite(largest_part(echoes->samples, echoes->precision, acquisition_samples(echoes->acquisition)));
 }
 
 static enum status chain_execute(void *data, const struct echoes *echoes, struct image *image, struct stages *stages)

@@ -105,7 +105,7 @@ enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes,
                             "%s left pixels unwritten, or made values that are not finite of finite echoes", name);
     if (status == STATUS_OK)
         status = image_scale(image, echoes->exponent);
-    if (status == STATUS_OK && !image_is_finite(image))
+    if (status == STATUS_OK && echoes->exponent != 0 && !image_is_finite(image))
         status = status_set(STATUS_INVALID,
                             "the image of %s is beyond the range of double; the echoes (targets.points.amplitude of a "
                             "scene, variable `samples` of a file) must be smaller",

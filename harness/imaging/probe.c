@@ -77,18 +77,51 @@ static struct probe_place place_of(const struct image *pilot, size_t number)
                                 segment_first(&pilot->patches[patch], (int)(number % each)), 1};
 }
 
-/* The brightest first; of equal ones, the first of the image. */
-static int compare(const void *a, const void *b)
+/* Of equal ones, the first of the image. */
+static bool brighter(const struct segment *one, const struct segment *other)
 {
-    const struct segment *one = a, *other = b;
-    if (one->energy != other->energy)
-        return one->energy > other->energy ? -1 : 1;
-    return (one->number > other->number) - (one->number < other->number);
+    return one->energy > other->energy || (one->energy == other->energy && one->number < other->number);
 }
 
-/* The segments of an image, those that count ahead and the brightest first: malloc'ed, *count of them count; NULL
-   without memory. */
-static struct segment *segments_sorted(const struct image *pilot, const struct region *region, size_t *count)
+static void swap(struct segment *a, struct segment *b)
+{
+    const struct segment kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/* Bring to their places, in order of brightness, those of the list whose ranks are wanted: ascending, counted from the
+   whole list's begin. (Hoare's selection, of many ranks at once.) */
+static void segments_select(struct segment *list, size_t begin, size_t end, const size_t *ranks, int wanted)
+{
+    while (wanted > 0 && end - begin > 1) {
+        const struct segment middle = list[begin + (end - begin - 1) / 2];
+        size_t low = begin, high = end - 1;
+        for (;;) {
+            while (brighter(&list[low], &middle))
+                low++;
+            while (brighter(&middle, &list[high]))
+                high--;
+            if (low >= high)
+                break;
+            swap(&list[low++], &list[high--]);
+        }
+        int lower = 0;
+        while (lower < wanted && ranks[lower] <= high)
+            lower++;
+        if (lower == wanted) {
+            end = high + 1;
+            continue;
+        }
+        segments_select(list, begin, high + 1, ranks, lower);
+        begin = high + 1;
+        ranks += lower;
+        wanted -= lower;
+    }
+}
+
+/* The segments of an image that count: malloc'ed; NULL without memory. */
+static struct segment *segments_make(const struct image *pilot, const struct region *region, size_t *count)
 {
     size_t all = 0, begin = 0;
     for (int k = 0; k < pilot->patch_count; k++)
@@ -104,10 +137,9 @@ static struct segment *segments_sorted(const struct image *pilot, const struct r
         }
         begin += each * (size_t)pilot->patches[k].r_count;
     }
-    if (list)
-        qsort(list, all, sizeof *list, compare);
-    while (list && *count < all && list[*count].energy >= 0)
-        ++*count;
+    for (size_t k = 0; k < all && list; k++)
+        if (list[k].energy >= 0)
+            list[(*count)++] = list[k];
     return list;
 }
 
@@ -130,18 +162,27 @@ static double rank_at(int drawn, double count)
 }
 
 /* The brightest, and of each stretch of the rest one at random, which stands for as many as the stretch is long. */
-static void places_choose(const struct image *pilot, const struct segment *list, size_t count, struct probe *probe)
+static void places_choose(const struct image *pilot, struct segment *list, size_t count, struct probe *probe)
 {
     struct random random = random_seed(1, 0);
+    size_t ranks[COUNT] = {0};
     probe->count = count <= COUNT ? (int)count : COUNT;
     const int bright = count <= COUNT ? (int)count : BRIGHT;
-    for (int k = 0; k < bright; k++)
-        probe->places[k] = place_of(pilot, list[k].number);
+    for (int k = 0; k < bright; k++) {
+        ranks[k] = (size_t)k;
+        probe->places[k].stands_for = 1;
+    }
     for (int k = bright; k < probe->count; k++) {
         const double low = rank_at(k - BRIGHT, (double)count), high = rank_at(k - BRIGHT + 1, (double)count);
         const size_t at = (size_t)(low + random_uniform(&random) * (high - low));
-        probe->places[k] = place_of(pilot, list[at < count ? at : count - 1].number);
+        ranks[k] = at < count ? at : count - 1;
         probe->places[k].stands_for = high - low;
+    }
+    segments_select(list, 0, count, ranks, probe->count);
+    for (int k = 0; k < probe->count; k++) {
+        const double stands_for = probe->places[k].stands_for;
+        probe->places[k] = place_of(pilot, list[ranks[k]].number);
+        probe->places[k].stands_for = stands_for;
     }
 }
 
@@ -181,10 +222,10 @@ static enum status segments_fill(const struct problem *problem, const struct ima
                                  struct probe *probe)
 {
     size_t count;
-    struct segment *list = segments_sorted(pilot, region, &count);
+    struct segment *list = segments_make(pilot, region, &count);
     if (list && count == 0) { /* the image shows nothing of the region */
         free(list);
-        list = segments_sorted(pilot, &(struct region){0, NULL}, &count);
+        list = segments_make(pilot, &(struct region){0, NULL}, &count);
     }
     *probe =
         (struct probe){.places = malloc(COUNT * sizeof *probe->places), .grids = malloc(COUNT * sizeof *probe->grids)};

@@ -68,7 +68,7 @@ static enum status image_fit(const struct sasbench_plan *plan, const struct imag
 {
     double largest = 0;
     for (int k = 0; k < image->patch_count; k++)
-        largest = fmax(largest, largest_part(image->pixels[k],
+        largest = fmax(largest, largest_part(image->pixels[k], PRECISION_DOUBLE,
                                              (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count));
     return single_holds(largest)
                ? STATUS_OK

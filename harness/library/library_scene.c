@@ -63,7 +63,7 @@ static enum status read_file(const struct sasbench *context, const void *with, s
 /* Compression divides by the replica's energy, whose squares must fit. */
 static enum status pulse_check(const char *name, const struct acquisition *a)
 {
-    const double largest = largest_part(a->pulse, (size_t)a->pulse_length);
+    const double largest = largest_part(a->pulse, PRECISION_DOUBLE, (size_t)a->pulse_length);
     return a->compressed || (largest >= 0x1p-20 && largest <= 0x1p20)
                ? STATUS_OK
                : status_set(STATUS_INVALID, "%s: the pulse's largest part is %g, must be 2^-20 to 2^20", name, largest);
@@ -112,8 +112,7 @@ static enum status echoes_take(const double *samples, struct scene *scene)
         status = echoes_allocate(a, PRECISION_DOUBLE, &kept);
     if (status != STATUS_OK)
         return status;
-    memcpy((void *)kept.samples, samples,
-           size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, sizeof(double complex)));
+    memcpy((void *)kept.samples, samples, acquisition_samples(a) * sizeof(double complex));
     scene->recorded = (double complex *)kept.samples;
     return noise_measure(&given, &a->noise);
 }
@@ -236,9 +235,9 @@ enum status scene_check(const struct sasbench_scene *scene)
 /* Echoes of extreme numbers are divided by a power of two. */
 static enum status echoes_put(const struct scene *scene, const struct echoes *both, int precision, void *samples)
 {
-    const struct acquisition *a = both->acquisition;
-    const size_t count = (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
-    const double *parts = both->samples, largest = ldexp(largest_part(both->samples, count), both->exponent);
+    const size_t count = acquisition_samples(both->acquisition);
+    const double *parts = both->samples,
+                 largest = ldexp(largest_part(both->samples, PRECISION_DOUBLE, count), both->exponent);
     if (!(largest < INFINITY) || (precision == SAS_FLOAT && !single_holds(largest)))
         return status_set(STATUS_INVALID, "%s: the echoes' largest part is %g, beyond %s", scene->name, largest,
                           precision == SAS_FLOAT ? "single precision; double is needed" : "double precision");

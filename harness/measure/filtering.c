@@ -71,7 +71,7 @@ enum status filtering_measure(const struct filtering *filtering, double complex 
         return status_set(STATUS_FAILED, "no memory for the echoes ahead of the filter");
     memcpy(before, records, count * sizeof *before);
     filtering_apply(filtering, records);
-    const double largest = largest_part(before, count);
+    const double largest = largest_part(before, PRECISION_DOUBLE, count);
     if (largest > 0) {
         double own = energy(before, NULL, count, largest);
         kept->kept_db = 10 * log10(energy(records, NULL, count, largest) / own);

@@ -14,7 +14,7 @@ static const double MOTION_MOST = 0.1;
 static double imaginary_share(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;
-    const size_t count = (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
+    const size_t count = acquisition_samples(a);
     double largest = 0, imaginary = 0;
     for (size_t n = 0; n < count; n++) {
         imaginary = fmax(imaginary, fabs(cimag(scene->recorded[n])));

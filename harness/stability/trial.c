@@ -38,14 +38,12 @@ const double complex *trial_image(const struct trial *trial, int mode, int spec)
 
 static enum status echoes_make(struct trial *trial, int unused)
 {
-    const struct acquisition *a = &trial->scene->acquisition;
     struct echoes echoes;
     (void)unused;
     enum status status = scene_echoes(trial->scene, &echoes);
     if (status != STATUS_OK)
         return status;
-    memcpy(trial->samples, echoes.samples,
-           (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples * sizeof *trial->samples);
+    memcpy(trial->samples, echoes.samples, acquisition_samples(&trial->scene->acquisition) * sizeof *trial->samples);
     trial->note->exponent = echoes.exponent;
     echoes_free(&echoes);
     return STATUS_OK;
@@ -206,9 +204,8 @@ static void *part_take(char **next, size_t bytes)
 
 static enum status memory_share(struct trial *trial)
 {
-    const struct acquisition *a = &trial->scene->acquisition;
     const size_t specs = (size_t)trial->spec_count, images = TRIAL_MODES * specs, parts = 6;
-    const size_t samples = (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
+    const size_t samples = acquisition_samples(&trial->scene->acquisition);
     const size_t bytes = samples * sizeof *trial->samples + images * sizeof *trial->attempts
                          + images * trial->pixels * sizeof *trial->images
                          + (1 + specs) * trial->pixels * sizeof *trial->ideal + sizeof *trial->note + parts * 64;
