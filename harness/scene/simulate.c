@@ -15,7 +15,7 @@
 #include "echoes/echo_data.h"
 #include "scene/random.h"
 
-enum { BINS = 16 /* whose phases follow from each other */ };
+enum { BINS = 32 };
 
 int pulse_length_lfm(double duration, double fs)
 {
@@ -145,6 +145,14 @@ static bool echo_make(const struct acquisition *a, size_t record, const struct t
     return true;
 }
 
+/* Bins from `first` on, whose phases follow from each other without a turn of their own: to the last of the positive
+   frequencies, or of all. */
+static int bins_from(int first, int length)
+{
+    const int positive = length / 2 + 1, end = first < positive ? positive : length;
+    return end - first < BINS ? end - first : BINS;
+}
+
 /* Add an echo of this amplitude to the spectrum: replica times exp(-j 2 pi f shift) with the amplitude of each bin. The
    adjoint leaves the spectrum, and returns its product with the conjugate of a unit echo's. */
 static double complex pass_delayed(const struct scene *scene, const struct replica *replica, const struct echo *echo,
@@ -154,25 +162,32 @@ static double complex pass_delayed(const struct scene *scene, const struct repli
     const int length = replica->length;
     const double bin = a->fs / length, shift = echo->delay + replica->lead / a->fs;
     const bool varies = scene->beam.per_frequency;
-    double complex step = turn(-bin * shift), phase = 1, sum = 0;
+    double complex steps[BINS] = {1, turn(-bin * shift)}, sum = 0;
     double weight[BINS];
     beam_weights(scene, &echo->angles, &carrier, 1, weight);
     if (weight[0] == 0 && !varies)
         return 0;
     for (int k = 1; k < BINS; k++)
         weight[k] = weight[0];
-    for (int k = 0; k < length; k++) {
-        const int part = k % BINS;
-        if (part == 0 && varies)
-            beam_weights(scene, &echo->angles, replica->frequency + k, length - k < BINS ? length - k : BINS, weight);
-        double f = replica->frequency[k];
-        phase = part && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift); /* restart: 1e-15 */
-        double complex value = replica->nyquist && 2 * k == length ? cos(2 * M_PI * f * shift) : phase;
-        value = product(replica->spectrum[k], value);
-        if (adjoint)
-            sum += product(weight[part] * conj(value), spectrum[k]);
-        else
-            spectrum[k] += product(weight[part] * amplitude, value);
+    for (int k = 2; k < BINS; k++)
+        steps[k] = product(steps[k / 2], steps[k - k / 2]);
+    for (int first = 0, count; first < length; first += count) {
+        const double *f = replica->frequency + first;
+        const double complex start = turn(-f[0] * shift);
+        double complex value[BINS], *part = spectrum + first;
+        count = bins_from(first, length);
+        if (varies)
+            beam_weights(scene, &echo->angles, f, count, weight);
+        for (int k = 0; k < count; k++)
+            value[k] = product(start, steps[k]);
+        if (replica->nyquist && 2 * (first + count - 1) == length)
+            value[count - 1] = cos(2 * M_PI * f[count - 1] * shift);
+        for (int k = 0; k < count; k++)
+            value[k] = weight[k] * product(replica->spectrum[first + k], value[k]);
+        for (int k = 0; k < count && adjoint; k++)
+            sum += product(conj(value[k]), part[k]);
+        for (int k = 0; k < count && !adjoint; k++)
+            part[k] += product(amplitude, value[k]);
     }
     return sum;
 }
@@ -204,7 +219,10 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
     const struct acquisition *a = &scene->acquisition;
     size_t samples = (size_t)a->samples;
     bool sampled = scene->pulse_kind == PULSE_LFM_TIME, any = false;
-    memset(work, 0, (size_t)replica->length * sizeof *work);
+    if (sampled)
+        memset(record, 0, samples * sizeof *record);
+    else
+        memset(work, 0, (size_t)replica->length * sizeof *work);
     for (int k = 0; k < scene->target_count; k++) {
         struct echo echo;
         if (!echo_make(a, index, &scene->targets[k], &echo))
@@ -216,8 +234,9 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
         else
             pass_delayed(scene, replica, &echo, false, amplitude, work);
     }
-    if (any && !sampled) {
-        fftw_execute_dft(replica->inverse, work, work);
+    if (!sampled) {
+        if (any)
+            fftw_execute_dft(replica->inverse, work, work);
         memcpy(record, work + replica->lead, samples * sizeof *record);
     }
     if (scene->noise_std > 0) {
@@ -228,12 +247,9 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
     }
 }
 
-static bool is_finite(const double complex *record, int samples)
+static bool is_finite(const double complex *numbers, int count)
 {
-    double sum = 0; /* a sample that is not finite leaves NaN */
-    for (int n = 0; n < samples; n++)
-        sum += 0 * creal(record[n]) + 0 * cimag(record[n]);
-    return sum == 0;
+    return isfinite(largest_part(numbers, PRECISION_DOUBLE, (size_t)count));
 }
 
 /* The power of two by which the echoes are divided: 0 unless the largest amplitude is so extreme that sums of
@@ -312,7 +328,6 @@ enum status simulation_pings(struct simulation *simulation, int first, int count
 #pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
     for (long long k = begin; k < end; k++) {
         double complex *record = samples + (size_t)(k - begin) * each;
-        memset(record, 0, each * sizeof *record);
         if (!progress_step())
             continue;
         simulate_pair(scene, replica, (size_t)k,
