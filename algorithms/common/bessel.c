@@ -29,7 +29,7 @@ double bessel_spherical(int n, double x)
     double term = 1, sum = 0;
     for (int k = 1; k <= n; k++)
         term *= x / (2 * k + 1);
-    for (int k = 0; k < 20; k++) {
+    for (int k = 0; fabs(term) > 1e-17 * fabs(sum); k++) {
         sum += term;
         term *= -x * x / (2 * (k + 1) * (2 * (n + k) + 3));
     }

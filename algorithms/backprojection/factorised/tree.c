@@ -221,8 +221,10 @@ static enum status taps_make(struct tree *tree)
     tree->band = law_band(&spectrum, a, each * each);
     tree->degree = farrow_degree(each, &spectrum, 1);
     const double least = 0.8 * a->sound_speed / (2 * tree->band * step_most(tree, 0)); /* the least that this leaves */
-    enum status status = polar_taps_choose(each, fmax(ANGLE_LEAST, least), &tree->range);
-    return status == STATUS_OK ? polar_taps_choose(each, ANGLE_LEAST, &tree->angle) : status;
+    const enum status status = polar_taps_choose(each, ANGLE_LEAST, &tree->angle);
+    tree->range = tree->angle;
+    return status == STATUS_OK && !(tree->range.oversampling >= least) ? polar_taps_choose(each, least, &tree->range)
+                                                                       : status;
 }
 
 enum status tree_make(const struct problem *problem, const struct tree_settings *settings, struct tree *tree)

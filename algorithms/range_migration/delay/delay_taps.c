@@ -145,6 +145,7 @@ enum status delay_taps_make(const struct acquisition *acquisition, double share,
     if (status != STATUS_OK)
         return status;
     made->taps = taps;
+#pragma omp parallel for
     for (int i = 0; i <= DELAY_INTERVALS; i++)
         weights_solve(&normal, (double)i / DELAY_INTERVALS, made->weights[i], made->slopes[i]);
     return STATUS_OK;
