@@ -16,9 +16,9 @@
 #include "scene/scene.h"
 
 static const char scene_name[] = "sweep/speckle";
-enum { RUNS = 2, ROUNDS = 3 }; /* of a probe in a round; rounds of all probes */
+enum { ROUNDS = 3 }; /* of all probes */
 
-/* The least of some runs, for other work on the machine only adds time. */
+/* The least of all rounds, for other work on the machine only adds time. */
 struct probe {
     double total, compress, focus; /* s */
     double parts[MIGRATIONS];      /* s: of range migration */
@@ -54,7 +54,7 @@ static void parts_add(const struct stages *stages, double parts[MIGRATIONS])
 static enum status probe_run(struct imaging *imaging, const struct echoes *echoes, struct probe *probe)
 {
     enum status status = STATUS_OK;
-    for (int k = 0; k <= RUNS && status == STATUS_OK; k++) {
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         struct stages stages;
         stages_begin(&stages);
         const double begin = stages.mark;
@@ -169,16 +169,18 @@ static enum status round_run(const struct bench *bench, struct probes *probes)
         const struct grid *grid;
         struct probe *probes;
         const char *engine;
-    } sets[] = {{&bench->usual, probes->of[0], "general"},
-                {&bench->wide, probes->of[1], "invariant"},
-                {&bench->narrow, probes->narrow[0], "general"},
-                {&bench->narrow, probes->narrow[1], "invariant"},
-                {&bench->steep, probes->steep, "general"}};
+        int without; /* 1 << what rates_fill does not need */
+    } sets[] = {{&bench->usual, probes->of[0], "general", 0},
+                {&bench->wide, probes->of[1], "invariant", 0},
+                {&bench->narrow, probes->narrow[0], "general", 1 << DOUBLE},
+                {&bench->narrow, probes->narrow[1], "invariant", 1 << DOUBLE},
+                {&bench->steep, probes->steep, "general", 1 << DOUBLE | 1 << FEW_TAPS | 1 << MANY_TAPS}};
     for (int k = 0; k < PROBE_SETS * PROBES && status == STATUS_OK; k++) {
         char text[80];
         const int set = k / PROBES, n = k % PROBES;
         snprintf(text, sizeof text, "%s%s", specs[n], sets[set].engine);
-        status = probe_spec(bench, text, sets[set].grid, &sets[set].probes[n]);
+        if (!(sets[set].without & 1 << n))
+            status = probe_spec(bench, text, sets[set].grid, &sets[set].probes[n]);
     }
     if (status == STATUS_OK)
         status = probe_spec(bench, "bp_factorised:stages=1,error=1e-3", &bench->usual, &probes->images);
