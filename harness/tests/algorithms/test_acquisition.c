@@ -267,6 +267,29 @@ static void heading_follows_the_track(void **state)
     acquisition_free(&a);
 }
 
+/* Of either sign, in either precision, of few numbers and of many (for threads). */
+static void the_largest_part_is_found(void **state)
+{
+    (void)state;
+    enum { COUNT = 1 << 17 };
+    static float complex single[COUNT];
+    static double complex both[COUNT];
+    static const double parts[] = {-0.0, -3, 1e30, INFINITY, -INFINITY, NAN};
+    for (size_t n = 0; n < sizeof parts / sizeof *parts; n++)
+        for (int count = 1; count <= COUNT; count += COUNT - 1) {
+            const double part = parts[n];
+            single[count - 1] = __builtin_complex(0.5F, (float)part);
+            both[count - 1] = __builtin_complex(part, -0.5);
+            const double least = largest_part(single, PRECISION_FLOAT, (size_t)count),
+                         most = largest_part(both, PRECISION_DOUBLE, (size_t)count);
+            const double expected = fmax(fabs(part), 0.5);
+            assert_true(isnan(part) ? isnan(least) && isnan(most) : least == (float)expected && most == expected);
+            single[count - 1] = 0;
+            both[count - 1] = 0;
+        }
+    assert_true(largest_part(both, PRECISION_DOUBLE, 0) == 0);
+}
+
 static void samples_are_allocated_and_converted(void **state)
 {
     (void)state;
@@ -338,6 +361,7 @@ int main(void)
         cmocka_unit_test(jitter_within_the_tolerance_is_straight),
         cmocka_unit_test(other_tracks_are_not_straight),
         cmocka_unit_test(heading_follows_the_track),
+        cmocka_unit_test(the_largest_part_is_found),
         cmocka_unit_test(samples_are_allocated_and_converted),
         cmocka_unit_test(images_are_allocated_and_scaled),
         cmocka_unit_test(sizes_do_not_overflow),

@@ -1,9 +1,11 @@
 /* Errors measured on few pixels, beside those of all pixels: fields, lone targets, a shadow, a loud neighbour,
    images of several patches and turned ones. */
+#include <complex.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "echoes/echo_data.h"
 #include "imaging/imaging.h"
 #include "metrics/metrics.h"
 #include "imaging/probe.h"
@@ -21,6 +23,28 @@ struct tally {
     int count, inside;  /* intervals that hold the error */
 };
 
+/* Segments stand in order of the pilot's brightness, the image's brightest pixel among the first. */
+static void order_check(const struct probe *probe, const struct image *pilot)
+{
+    double before = INFINITY, brightest = 0, first = 0;
+    for (int k = 0; k < probe->count; k++) {
+        const struct probe_place *p = &probe->places[k];
+        double energy = 0;
+        for (int j = 0; j < probe->grids[k].x_count; j++) {
+            const double square = pow(cabs(image_pixel(pilot, p->patch, p->row, p->column + j)), 2);
+            energy += square;
+            first = k < 32 ? fmax(first, square) : first;
+        }
+        assert_true(energy <= before * (1 + 1e-12));
+        before = energy;
+    }
+    for (int k = 0; k < pilot->patch_count; k++)
+        for (int i = 0; i < pilot->patches[k].r_count; i++)
+            for (int j = 0; j < pilot->patches[k].x_count; j++)
+                brightest = fmax(brightest, pow(cabs(image_pixel(pilot, k, i, j)), 2));
+    assert_true(first == brightest);
+}
+
 static void scene_probe(struct scene *scene, const char *name, struct tally *tally)
 {
     const struct region everywhere = {0, NULL};
@@ -36,6 +60,8 @@ static void scene_probe(struct scene *scene, const char *name, struct tally *tal
     spec_free(&spec);
     assert_int_equal(probe_make(&exact, &problem, &session.echoes[PRECISION_DOUBLE], &pilot, &everywhere, &probe),
                      STATUS_OK);
+    if (!probe.whole)
+        order_check(&probe, &pilot);
     for (size_t k = 0; k < sizeof specs / sizeof *specs; k++) {
         assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
         if (session_image(&session, &spec, &image) == STATUS_OK) {
