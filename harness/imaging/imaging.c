@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "backprojection/pairs/pairs.h"
+#include "common/memory.h"
 #include "contract/param.h"
 #include "echoes/echo_data.h"
 
@@ -22,7 +23,7 @@ static enum status fences_set(struct imaging *imaging)
 {
     for (int k = 0; k < imaging->image.patch_count; k++) {
         const size_t bytes = patch_bytes(&imaging->image, k);
-        char *block = aligned_alloc(64, (bytes + 2 * FENCE + 63) / 64 * 64);
+        char *block = memory_columns(64, bytes + 2 * FENCE);
         if (!block)
             return status_set(STATUS_FAILED, "%s: no memory for its image", imaging->algorithm->name);
         memset(block, FENCE_BYTE, bytes + 2 * FENCE);
