@@ -32,9 +32,7 @@ static enum status echoes_make(const struct scene *scene, struct echoes echoes[2
         some.targets = targets;
         some.target_count = TARGETS_MOST;
     }
-    enum status status = scene_echoes(&some, &echoes[PRECISION_DOUBLE]);
-    if (status == STATUS_OK)
-        status = echoes_convert(&echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &echoes[PRECISION_FLOAT]);
+    const enum status status = scene_echoes_both(&some, echoes);
     echoes[PRECISION_FLOAT].acquisition = echoes[PRECISION_DOUBLE].acquisition = &scene->acquisition;
     return status;
 }

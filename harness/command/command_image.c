@@ -145,15 +145,16 @@ static enum status verify(const struct problem *problem, const struct echoes *fr
     return STATUS_OK;
 }
 
-/* A plan comes before the echoes: what cannot be imaged need not be simulated. A choice comes after them. */
+/* A plan comes before the echoes: what cannot be imaged need not be simulated. A choice comes after them. Extreme
+   echoes are worked on divided by their power of two, which the finished image is multiplied by. */
 static enum status form_image(const struct spec *spec, const struct scene *scene, bool verified, struct image *image,
                               struct image_origin *origin, double *seconds)
 {
     const struct problem problem = scene_problem(scene, spec->precision);
     struct imaging imaging = {.algorithm = NULL};
     struct budget budget;
-    struct echoes simulated = {0}, recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
-    const struct echoes *from = scene->recorded ? &recorded : &simulated;
+    const struct echoes recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
+    struct echoes made = {0};
     const bool choice = choice_asked(spec, &budget);
     enum status status = STATUS_OK;
     if (!choice) {
@@ -165,20 +166,26 @@ static enum status form_image(const struct spec *spec, const struct scene *scene
         snprintf(origin->engine, sizeof origin->engine, "%s", work.engine);
     }
     progress_line(false, "%s: echoes", scene->name);
-    if (!scene->recorded)
-        status = scene_simulate(scene, &simulated);
+    const bool as_recorded = scene->recorded && echoes_exponent(&recorded, PRECISION_DOUBLE) == 0;
+    if (!as_recorded)
+        status = scene_echoes(scene, &made);
+    struct echoes echoes = as_recorded ? recorded : made;
+    echoes.exponent = 0;
     progress_line(false, "%s: image by %s", scene->name, spec->algorithm->name);
     const double begin = seconds_now();
     if (status == STATUS_OK)
-        status = choice ? choose(spec, &budget, scene, from, image, origin) : execute(spec, &imaging, from, image);
+        status =
+            choice ? choose(spec, &budget, scene, &echoes, image, origin) : execute(spec, &imaging, &echoes, image);
     *seconds = seconds_now() - begin;
     if (status == STATUS_OK) {
-        warn_of_image(from, image);
-        status = verified ? verify(&problem, from, image) : STATUS_OK;
+        warn_of_image(&echoes, image);
+        status = verified ? verify(&problem, &echoes, image) : STATUS_OK;
         if (status != STATUS_OK)
             image_free(image);
     }
-    echoes_free(&simulated);
+    if (status == STATUS_OK)
+        status = imaging_scale(spec->algorithm->name, made.exponent, image);
+    echoes_free(&made);
     imaging_close(&imaging);
     return status;
 }

@@ -119,12 +119,15 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
     return STATUS_OK;
 }
 
-/* The power of two that brings the largest part of the numbers below 1; 0 where it lies well within the range of
-   `precision`: room for the sums of 2^60 samples, and for parts 2^60 times smaller. */
-static int range_exponent(double largest, enum precision precision)
+/* It brings the largest part below 1, unless that lies well within the range of `precision`: room for the sums of 2^60
+   samples, and for parts 2^60 times smaller. */
+int echoes_exponent(const struct echoes *echoes, enum precision precision)
 {
     const double reach = precision == PRECISION_FLOAT ? 0x1p40 : 0x1p400;
     int exponent = 0;
+    if (echoes->precision == PRECISION_FLOAT)
+        return 0;
+    const double largest = largest_part(echoes->samples, echoes->precision, acquisition_samples(echoes->acquisition));
     if (largest > 0 && largest < INFINITY && !(largest >= 1 / reach && largest <= reach))
         frexp(largest, &exponent);
     return exponent;
@@ -132,14 +135,11 @@ static int range_exponent(double largest, enum precision precision)
 
 enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to)
 {
-    const struct acquisition *acquisition = from->acquisition;
-    enum status status = echoes_allocate(acquisition, precision, to);
+    enum status status = echoes_allocate(from->acquisition, precision, to);
     if (status == STATUS_OK) {
-        const size_t count = acquisition_samples(acquisition);
-        int exponent = from->precision == PRECISION_DOUBLE
-                           ? range_exponent(largest_part(from->samples, from->precision, count), precision)
-                           : 0;
-        numbers_copy(from->samples, from->precision, -exponent, (void *)to->samples, precision, count);
+        const int exponent = echoes_exponent(from, precision);
+        numbers_copy(from->samples, from->precision, -exponent, (void *)to->samples, precision,
+                     acquisition_samples(from->acquisition));
         to->exponent = from->exponent + exponent;
     }
     return status;

@@ -20,6 +20,8 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
 /* A copy in the other precision, same ownership. If the largest sample lies near the ends of the precision's range,
    where sums overflow and small parts are lost, samples are divided by a power of two, exactly: to->exponent. */
 enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to);
+/* That power of two, 0 for none. */
+int echoes_exponent(const struct echoes *echoes, enum precision precision);
 void echoes_free(struct echoes *echoes);
 /* Multiply by -1, exactly: samples that the caller owns; an image. */
 void echoes_negate(struct echoes *echoes);

@@ -58,8 +58,9 @@ static enum status head_read(FILE *stream, const char *path, struct array *array
     const size_t bytes = head[6] == 1 ? 2 : 4;
     const bool known = fread(length, bytes, 1, stream) == 1;
     const uint32_t count = length[0] | (uint32_t)length[1] << 8 | (uint32_t)length[2] << 16 | (uint32_t)length[3] << 24;
-    if (!known || count > DESCRIPTION_MOST || fread(text, 1, count, stream) != count
-        || !description_parse(text, array)) {
+    if (!known || (count <= DESCRIPTION_MOST && fread(text, 1, count, stream) != count))
+        return status_set(STATUS_INVALID, "%s: its head is cut off; " ACCEPTED, path);
+    if (count > DESCRIPTION_MOST || !description_parse(text, array)) {
         const int shown = (int)fmin((double)strcspn(text, "}"), 120) + 1; /* blanks fill the rest */
         return status_set(STATUS_INVALID, "%s: its array is %.*s; " ACCEPTED ", with two dimensions", path, shown,
                           text);

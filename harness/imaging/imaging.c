@@ -104,9 +104,15 @@ enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes,
     if (status == STATUS_OK && !image_is_finite(image))
         status = status_set(STATUS_FAILED,
                             "%s left pixels unwritten, or made values that are not finite of finite echoes", name);
-    if (status == STATUS_OK)
-        status = image_scale(image, echoes->exponent);
-    if (status == STATUS_OK && echoes->exponent != 0 && !image_is_finite(image))
+    if (status != STATUS_OK)
+        image_free(image);
+    return status == STATUS_OK ? imaging_scale(name, echoes->exponent, image) : status;
+}
+
+enum status imaging_scale(const char *name, int exponent, struct image *image)
+{
+    enum status status = image_scale(image, exponent);
+    if (status == STATUS_OK && exponent != 0 && !image_is_finite(image))
         status = status_set(STATUS_INVALID,
                             "the image of %s is beyond the range of double; the echoes (targets.points.amplitude of a "
                             "scene, variable `samples` of a file) must be smaller",

@@ -34,6 +34,10 @@ bool imaging_is_fenced(const struct imaging *imaging);
    range of double; *image is then empty. */
 enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image);
 
+/* Multiply a finished image by 2^exponent, exactly. Errors: STATUS_FAILED without memory, STATUS_INVALID when the image
+   is then beyond the range of double; *image is then empty. `name`: the algorithm's. */
+enum status imaging_scale(const char *name, int exponent, struct image *image);
+
 void imaging_close(struct imaging *imaging);
 
 /* Plan, execute and finish. *work (may be NULL) is the plan's. Errors: as above; *image is then empty. */

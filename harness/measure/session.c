@@ -118,14 +118,7 @@ enum status session_open(const struct scene *scene, struct session *session)
 {
     *session = (struct session){.scene = scene};
     session->condition_count = scene_conditions(scene, session->conditions);
-    enum status status = scene_echoes(scene, &session->echoes[PRECISION_DOUBLE]);
-    if (status == STATUS_OK)
-        status = echoes_convert(&session->echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &session->echoes[PRECISION_FLOAT]);
-    /* Images of a session keep the power of two that its echoes were divided by: they are only compared with each
-       other. */
-    const int exponent = session->echoes[PRECISION_DOUBLE].exponent;
-    session->echoes[PRECISION_DOUBLE].exponent = 0;
-    session->echoes[PRECISION_FLOAT].exponent -= exponent;
+    enum status status = scene_echoes_both(scene, session->echoes);
     const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
     session->control = control_begin(&problem, &session->echoes[PRECISION_FLOAT]);
     if (status == STATUS_OK)

@@ -240,3 +240,15 @@ enum status scene_echoes(const struct scene *scene, struct echoes *echoes)
     const struct echoes recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
     return echoes_convert(&recorded, PRECISION_DOUBLE, echoes);
 }
+
+enum status scene_echoes_both(const struct scene *scene, struct echoes echoes[2])
+{
+    enum status status = scene_echoes(scene, &echoes[PRECISION_DOUBLE]);
+    if (status != STATUS_OK)
+        return status;
+    echoes[PRECISION_DOUBLE].exponent = 0;
+    status = echoes_convert(&echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &echoes[PRECISION_FLOAT]);
+    if (status != STATUS_OK)
+        echoes_free(&echoes[PRECISION_DOUBLE]);
+    return status;
+}

@@ -26,6 +26,9 @@ void simulation_close(struct simulation *simulation);
 
 /* The scene's echoes: a copy of recorded ones, or simulated as above. Same errors. */
 enum status scene_echoes(const struct scene *scene, struct echoes *echoes);
+/* In each precision, in the unit of the double ones, whose exponent is set to 0: images of them are compared with each
+   other. Same errors; nothing to free then. */
+enum status scene_echoes_both(const struct scene *scene, struct echoes echoes[2]);
 
 /* The replica of an LFM pulse: exp(j pi (B/T)(t - T/2)^2), t = k/fs in [0, T): floor(T fs) samples, at least 1. */
 int pulse_length_lfm(double duration, double fs);

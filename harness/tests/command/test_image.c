@@ -26,8 +26,63 @@ static void errors_are_verified(void **state)
     free(told);
 }
 
+/* study/quick with one amplitude. */
+static const char quick_text[] =
+    "sonar = { fc = 150e3; bandwidth = 15e3; fs = 30e3; };\n"
+    "pulse = { kind = \"lfm\"; duration = 2e-3; };\n"
+    "array = { tx_length = 0.08; rx_length = 0.04; receivers = 8; first_offset = 0.04; pitch = 0.04; };\n"
+    "track = { speed = 2.5; pri = 0.064; pings = 18; x_first = -1.52; };\n"
+    "record = { first_sample = 720; samples = 256; };\n"
+    "beam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.443; };\n"
+    "targets = { points = ( { x = 0.0; r = 20.0; amplitude = %.17g; } ); };\n"
+    "image = { around_targets = { half_x = 0.6; half_r = 0.15; x_step = 0.02; r_step = 0.025; }; };\n";
+
+/* What `image --verify` says of a scene and of a recording of it with echoes of this amplitude, without a warning. */
+static void error_of_amplitude(double amplitude, const char *algorithm, char of[2][300])
+{
+    const char *const simulate[ARGUMENTS_MAX] = {"simulate", "extreme.cfg", "-o", "extreme.mat"};
+    char text[2000];
+    snprintf(text, sizeof text, quick_text, amplitude);
+    text_write("extreme.cfg", text);
+    program_good(simulate);
+    for (int k = 0; k < 2; k++) {
+        const char *const verified[ARGUMENTS_MAX] = {"image",
+                                                     k ? "--echoes" : "--scene",
+                                                     k ? "extreme.mat" : "extreme.cfg",
+                                                     "-a",
+                                                     algorithm,
+                                                     "--grid",
+                                                     "-.6:.02:61,19.85:.025:13",
+                                                     "-o",
+                                                     "v.mat",
+                                                     "--verify"};
+        char *told = program_output(verified);
+        snprintf(of[k], sizeof of[k], "%.*s", (int)strcspn(told, "\n"), told);
+        assert_non_null(strstr(of[k], "Relative error "));
+        free(told);
+    }
+}
+
+/* A power of two changes no digit of an error, nor brings a warning, though the samples lie at the ends of the range. */
+static void extreme_echoes_are_measured(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"bp_linear", "bp_linear:precision=double", "auto:error=1e-3"};
+    static const double amplitudes[] = {0x1p990, 0x1p-990};
+    char usual[2][300], extreme[2][300];
+    for (size_t a = 0; a < COUNT_OF(specs); a++) {
+        error_of_amplitude(1, specs[a], usual);
+        for (size_t n = 0; n < COUNT_OF(amplitudes); n++) {
+            error_of_amplitude(amplitudes[n], specs[a], extreme);
+            for (int k = 0; k < 2; k++)
+                assert_string_equal(extreme[k], usual[k]);
+        }
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(errors_are_verified)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(errors_are_verified),
+                                       cmocka_unit_test(extreme_echoes_are_measured)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
