@@ -206,7 +206,7 @@ double law_ends(const struct problem *problem, int taps)
     double sum = 0, pixels = 0;
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
-        const double own = (double)g->r_count * g->x_count;
+        const double own = (double)grid_pixels(g);
         sum += own * patch_ends(problem->acquisition, g, taps / 2.0);
         pixels += own;
     }

@@ -34,6 +34,7 @@ struct grid {
     double angle_rad;       /* within +-pi/2; an algorithm refuses turned grids that it cannot image */
 };
 
+size_t grid_pixels(const struct grid *grid);
 /* The place of row i and column j, which need not be whole numbers. */
 struct vector grid_point(const struct grid *grid, double i, double j);
 /* The inverse: (x', r', 0) of a place in the track's axes. */

@@ -141,7 +141,7 @@ static struct survey survey_make(const struct problem *problem)
             place_survey(a, g,
                          grid_point(g, node(n / columns, rows, g->r_count), node(n % columns, columns, g->x_count)),
                          &counts, &survey);
-        const double pixels = (double)g->r_count * g->x_count;
+        const double pixels = (double)grid_pixels(g);
         survey.places += pixels;
         survey.unmet += pixels * (counts.places - counts.met) / counts.places;
         survey.unseen += pixels * counts.unseen / counts.places;

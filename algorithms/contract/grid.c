@@ -33,6 +33,11 @@ struct pixel_window problem_window(const struct problem *problem, int patch)
     return problem->window ? *problem->window : (struct pixel_window){0, grid->r_count, 0, grid->x_count};
 }
 
+size_t grid_pixels(const struct grid *grid)
+{
+    return (size_t)grid->r_count * (size_t)grid->x_count;
+}
+
 struct vector grid_point(const struct grid *grid, double i, double j)
 {
     double x = grid->x_first + j * grid->x_step, r = grid->r_first + i * grid->r_step;

@@ -166,7 +166,7 @@ static enum status check_work(const struct rma *rma)
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++)
         bytes += 2 * real_bytes * ((double)s->period * rma->receivers * s->row + (double)s->rows * (double)s->columns);
     for (int k = 0; k < rma->patch_count; k++)
-        pixels += (double)rma->patches[k].grid.r_count * rma->patches[k].grid.x_count;
+        pixels += (double)grid_pixels(&rma->patches[k].grid);
     double given = 2 * real_bytes * (records * rma->problem.acquisition->samples + pixels),
            direct = 16 * records * pixels;
     if (!(rma->work.flops <= fmax(WORK_LIMIT, much * direct)))

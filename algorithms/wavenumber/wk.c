@@ -59,7 +59,7 @@ void wk_count(struct wk *wk)
                        * (lines * 8 + columns * 8 + (patch->folds ? 1 : 2) * fft_flops(patch->columns)
                           + (patch->folds ? 0 : 6 * patch->columns));
         if (patch->resampled)
-            work->flops += (double)patch->grid.r_count * patch->grid.x_count * 4.0 * wk->taps * wk->taps;
+            work->flops += (double)grid_pixels(&patch->grid) * 4.0 * wk->taps * wk->taps;
     }
     const bool turned = wk->method.rotates && wk->angle == 0, unfiltered = wk->method.filters && !wk->filter;
     snprintf(work->engine, sizeof work->engine, "%s", wk->angle != 0 ? "rotated" : wk_unfold_names[wk->options.unfold]);

@@ -85,7 +85,7 @@ static void cost_fill(const struct wk *wk, double cost[MIGRATIONS])
         cost[MIGRATION_FOCUS] += wk_stolt_cells(wk, patch) * STOLT[wk->taps > 8] + lines * patch->length * FOCUSED;
         cost[MIGRATION_FOCUS] += rows * patch->columns * transforms;
         if (patch->resampled)
-            cost[MIGRATION_FOCUS] += (double)patch->grid.r_count * patch->grid.x_count * wk->taps;
+            cost[MIGRATION_FOCUS] += (double)grid_pixels(&patch->grid) * wk->taps;
     }
 }
 

@@ -149,8 +149,7 @@ static size_t scratch_size(const struct wk *wk)
 static void plan_patch(struct wk *wk, struct wk_patch *patch)
 {
     if (patch->resampled) {
-        patch->wide =
-            store_take(&wk->store, (size_t)patch->own.r_count * (size_t)patch->own.x_count, sizeof(complex_real), 1);
+        patch->wide = store_take(&wk->store, grid_pixels(&patch->own), sizeof(complex_real), 1);
         real *taper = patch->taper = store_take(&wk->store, (size_t)patch->length, sizeof(real), 1);
         for (int k = 0; taper && k < patch->length; k++) {
             double place = (double)(k < patch->length / 2 ? k : k - patch->length) / patch->length;
@@ -211,7 +210,7 @@ static enum status plan(struct wk *wk)
     wk->scratch_bytes = scratch_size(wk);
     double wide = 0;
     for (int k = 0; k < wk->patch_count; k++)
-        wide += wk->patches[k].resampled ? (double)wk->patches[k].own.r_count * wk->patches[k].own.x_count : 0;
+        wide += wk->patches[k].resampled ? (double)grid_pixels(&wk->patches[k].own) : 0;
     double bytes = ((double)wk->azimuth_length * wk->row + (double)wk->rows * (double)wk->line_stride + wide)
                        * sizeof(complex_real)
                    + (double)wk->threads * (double)wk->scratch_bytes;

@@ -312,7 +312,7 @@ static enum status zeros_make(const struct acquisition *a, enum precision precis
 {
     const enum status status = echoes_allocate(a, precision, echoes);
     if (status == STATUS_OK)
-        memory_clear((void *)echoes->samples, acquisition_samples(a) * precision_size(precision));
+        memory_clear((void *)echoes->samples, samples_bytes(a, precision));
     return status;
 }
 

@@ -109,19 +109,16 @@ static void summaries_write(const struct predictions *predictions, double *ratio
 static enum status files_write(const char *directory, const struct predictions *predictions)
 {
     struct text_file file;
-    char path[4200];
     double *ratios = calloc((size_t)predictions->count + 1, sizeof *ratios);
     if (!ratios)
         return status_set(STATUS_FAILED, "%s: no memory for %d predictions", directory, predictions->count);
-    snprintf(path, sizeof path, "%s/predicted.csv", directory);
-    enum status status = text_file_open(path, &file);
+    enum status status = text_file_in(directory, "predicted.csv", &file);
     if (status == STATUS_OK) {
         rows_write(predictions, file.stream);
         status = text_file_close(&file, STATUS_OK);
     }
-    snprintf(path, sizeof path, "%s/predictions.csv", directory);
     if (status == STATUS_OK)
-        status = text_file_open(path, &file);
+        status = text_file_in(directory, "predictions.csv", &file);
     if (status == STATUS_OK) {
         summaries_write(predictions, ratios, file.stream);
         status = text_file_close(&file, STATUS_OK);

@@ -262,8 +262,7 @@ static enum status picture_copy(const struct pages *pages, const char *name)
     FILE *picture = fopen(path, "rb");
     if (!picture)
         return status_set(STATUS_INVALID, "%s: cannot be read", path);
-    snprintf(path, sizeof path, "%s/%s", pages->to, name);
-    enum status status = text_file_open(path, &copy);
+    enum status status = text_file_in(pages->to, name, &copy);
     if (status == STATUS_OK) {
         for (size_t size; (size = fread(buffer, 1, sizeof buffer, picture)) > 0;)
             fwrite(buffer, 1, size, copy.stream);

@@ -33,10 +33,8 @@ static void item_format(const struct reproduced *line, char *item, size_t size)
 static enum status reproduced_write(const char *directory, const struct measured *measured,
                                     const struct reproduced *lines, int count)
 {
-    char path[4200];
     struct text_file file;
-    snprintf(path, sizeof path, "%s/reproduced.csv", directory);
-    enum status status = text_file_open(path, &file);
+    enum status status = text_file_in(directory, "reproduced.csv", &file);
     if (status != STATUS_OK)
         return status;
     reproduced_head(file.stream, "reproduced", measured);
@@ -151,12 +149,10 @@ static void verdicts_print(const struct verdicts *verdicts)
 /* Write claims.csv: the requested claims, which are printed, too, and those that the folder can decide already. */
 static enum status claims_report(const char *directory, const struct selection *selection, struct measured *measured)
 {
-    char path[4200];
     struct text_file file;
     struct verdicts verdicts = {.noisy = 0};
     int asked = 0;
-    snprintf(path, sizeof path, "%s/claims.csv", directory);
-    enum status status = text_file_open(path, &file);
+    enum status status = text_file_in(directory, "claims.csv", &file);
     if (status != STATUS_OK)
         return status;
     reproduced_head(file.stream, "claims", measured);

@@ -106,7 +106,7 @@ static bool conjugate(const struct image *image)
 {
     bool is_complex = false;
     for (int k = 0; k < image->patch_count; k++) {
-        const size_t count = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count;
+        const size_t count = grid_pixels(&image->patches[k]);
         float complex *single = image->pixels[k];
         double complex *pixels = image->pixels[k];
         for (size_t n = 0; n < count; n++)

@@ -126,15 +126,14 @@ void tiles_print(const struct scene *scene, const struct tiled *tiled)
     const struct acquisition *a = &scene->acquisition;
     const double ping = ping_bytes(scene), pings = (double)tiled->cost.pings * tiles_count(tiles);
     char text[300];
-    snprintf(text, sizeof text,
-             "In %d tiles of %d x %d pixels (along x, r). Each reads up to %d of %d pings, all of them %s, %.2g times "
-             "the echoes, and they write %s.",
-             tiles_count(tiles), tiles->columns, tiles->rows, tiled->cost.pings, a->pings,
-             cell_significant(1e-9 * ping * pings, " GB").text, pings / a->pings,
-             cell_significant(1e-9 * (double)tiles->grid.x_count * tiles->grid.r_count
-                                  * (double)precision_size(tiles->precision),
-                              " GB")
-                 .text);
+    snprintf(
+        text, sizeof text,
+        "In %d tiles of %d x %d pixels (along x, r). Each reads up to %d of %d pings, all of them %s, %.2g times "
+        "the echoes, and they write %s.",
+        tiles_count(tiles), tiles->columns, tiles->rows, tiled->cost.pings, a->pings,
+        cell_significant(1e-9 * ping * pings, " GB").text, pings / a->pings,
+        cell_significant(1e-9 * (double)grid_pixels(&tiles->grid) * (double)precision_size(tiles->precision), " GB")
+            .text);
     table_text(stdout, 0, text);
 }
 
@@ -156,7 +155,7 @@ static enum status node_line(int nodes, const struct spec *spec, const struct sc
         return status;
     const int count = tiles_count(&tiles), each = (count + nodes - 1) / nodes;
     const double seconds = each * cost.flops * tiled->flop_s, pings = (double)count * cost.pings;
-    const double size = (double)precision_size(spec->precision), pixels = (double)g->x_count * g->r_count;
+    const double size = (double)precision_size(spec->precision), pixels = (double)grid_pixels(g);
     const double bytes = pings * ping_bytes(scene) + pixels * size;
     char tile[32];
     *alone = nodes == 1 ? seconds : *alone;

@@ -94,7 +94,7 @@ void conformance_execute(const struct conformance *c, const char *place, void *p
     struct echoes converted, given;
     struct stages stages;
     const size_t size = precision_size(problem->precision);
-    const size_t bytes = acquisition_samples(problem->acquisition) * size;
+    const size_t bytes = samples_bytes(problem->acquisition, problem->precision);
     conformance_need(c, echoes_convert(echoes, problem->precision, &converted));
     given = converted;
     given.acquisition = problem->acquisition;
@@ -102,7 +102,7 @@ void conformance_execute(const struct conformance *c, const char *place, void *p
     *image = (struct image){problem->patch_count, problem->patches, problem->precision,
                             calloc((size_t)problem->patch_count, sizeof(void *))};
     for (int k = 0; k < problem->patch_count; k++) {
-        const size_t pixels = (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count * size;
+        const size_t pixels = grid_pixels(&problem->patches[k]) * size;
         image->pixels[k] = guarded(c, pixels, behind);
         memset(image->pixels[k], 0x5a, pixels); /* every pixel must be written */
     }
@@ -147,16 +147,11 @@ void conformance_echoes(const struct conformance *c, const struct setting *setti
         scene->targets[k].x -= 0.1;
 }
 
-static size_t pixel_count(const struct image *image, int patch)
-{
-    return (size_t)image->patches[patch].x_count * (size_t)image->patches[patch].r_count;
-}
-
 bool same_bits(const struct image *a, const struct image *b)
 {
     bool same = true;
     for (int k = 0; k < a->patch_count; k++)
-        same &= memcmp(a->pixels[k], b->pixels[k], pixel_count(a, k) * precision_size(a->precision)) == 0;
+        same &= memcmp(a->pixels[k], b->pixels[k], grid_pixels(&a->patches[k]) * precision_size(a->precision)) == 0;
     return same;
 }
 

@@ -33,6 +33,11 @@ size_t acquisition_samples(const struct acquisition *acquisition)
     return (size_t)acquisition->pings * (size_t)acquisition->receivers * (size_t)acquisition->samples;
 }
 
+size_t samples_bytes(const struct acquisition *acquisition, enum precision precision)
+{
+    return acquisition_samples(acquisition) * precision_size(precision);
+}
+
 size_t size_product(size_t a, size_t b, size_t c, size_t d)
 {
     size_t product;
@@ -47,11 +52,6 @@ size_t size_product(size_t a, size_t b, size_t c, size_t d)
 static void *allocate(size_t size)
 {
     return size > 0 && size <= PTRDIFF_MAX - LINE ? memory_columns(LINE, size) : NULL;
-}
-
-static size_t pixel_count(const struct grid *patch)
-{
-    return (size_t)patch->r_count * (size_t)patch->x_count;
 }
 
 static double complex number_at(const void *numbers, enum precision precision, size_t index)
@@ -170,14 +170,14 @@ void echoes_negate(struct echoes *echoes)
 void image_negate(struct image *image)
 {
     for (int k = 0; k < image->patch_count; k++)
-        negate(image->pixels[k], pixel_count(&image->patches[k]), image->precision);
+        negate(image->pixels[k], grid_pixels(&image->patches[k]), image->precision);
 }
 
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image)
 {
     double bytes = 0;
     for (int i = 0; i < patch_count; i++) {
-        bytes += (double)patches[i].r_count * patches[i].x_count * (double)precision_size(precision);
+        bytes += (double)grid_pixels(&patches[i]) * (double)precision_size(precision);
     }
     *image = (struct image){0};
     enum status room = memory_check(bytes, "the image");
@@ -210,7 +210,7 @@ enum status image_scale(struct image *image, int exponent)
         return status;
     for (int i = 0; i < image->patch_count; i++) {
         numbers_copy(image->pixels[i], image->precision, exponent, scaled.pixels[i], PRECISION_DOUBLE,
-                     pixel_count(&image->patches[i]));
+                     grid_pixels(&image->patches[i]));
     }
     image_free(image);
     *image = scaled;
@@ -236,6 +236,6 @@ bool image_is_finite(const struct image *image)
 {
     bool finite = true;
     for (int k = 0; k < image->patch_count; k++)
-        finite = finite && isfinite(largest_part(image->pixels[k], image->precision, pixel_count(&image->patches[k])));
+        finite = finite && isfinite(largest_part(image->pixels[k], image->precision, grid_pixels(&image->patches[k])));
     return finite;
 }

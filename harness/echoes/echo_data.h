@@ -10,6 +10,7 @@ const char *precision_name(enum precision precision); /* "float", "double" */
 
 /* Samples of all records together; the acquisition was checked to fit into memory. */
 size_t acquisition_samples(const struct acquisition *acquisition);
+size_t samples_bytes(const struct acquisition *acquisition, enum precision precision);
 
 /* a * b * c * d bytes, or 0 if that overflows size_t. */
 size_t size_product(size_t a, size_t b, size_t c, size_t d);

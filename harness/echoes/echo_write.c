@@ -85,11 +85,6 @@ void acquisition_write(struct writer *writer, const struct acquisition *a, const
     echo_notes_write(writer, notes);
 }
 
-static size_t samples_bytes(const struct acquisition *a, enum precision precision)
-{
-    return acquisition_samples(a) * precision_size(precision);
-}
-
 static enum status begin(struct writer *writer, const char *path, const struct acquisition *a, size_t bytes)
 {
     const size_t rx_bytes = (size_t)a->receivers * (size_t)a->pings * sizeof *a->rx;

@@ -86,8 +86,7 @@ enum status image_file_write(const char *path, const struct image *image, const 
 {
     size_t largest = 0;
     for (int k = 0; k < image->patch_count; k++) {
-        size_t bytes =
-            (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count * precision_size(image->precision);
+        size_t bytes = grid_pixels(&image->patches[k]) * precision_size(image->precision);
         largest = bytes > largest ? bytes : largest;
     }
     struct writer writer;

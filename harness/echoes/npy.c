@@ -119,7 +119,7 @@ enum status npy_pixels_read(FILE *stream, const char *path, const struct image *
     const struct grid *grid = image->patches;
     size_t all = 0, before = 0;
     for (int k = 0; k < image->patch_count; k++)
-        all += (size_t)grid[k].r_count * (size_t)grid[k].x_count;
+        all += grid_pixels(&grid[k]);
     enum status status = head_read(stream, path, &array);
     if (status != STATUS_OK)
         return status;
@@ -138,7 +138,7 @@ enum status npy_pixels_read(FILE *stream, const char *path, const struct image *
     }
     for (int k = 0; k < image->patch_count && status == STATUS_OK; k++) {
         status = numbers_read(stream, path, &array, image, k, before, all);
-        before += (size_t)grid[k].r_count * (size_t)grid[k].x_count;
+        before += grid_pixels(&grid[k]);
     }
     return status;
 }

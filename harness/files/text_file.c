@@ -1,4 +1,5 @@
 /* Text files that get their name when they are whole (text_file.h). */
+#define _GNU_SOURCE /* asprintf */
 #include "files/text_file.h"
 
 #include <errno.h>
@@ -78,6 +79,16 @@ static enum status file_open(const char *path, bool named, struct text_file *fil
 enum status text_file_open(const char *path, struct text_file *file)
 {
     return file_open(path, false, file);
+}
+
+enum status text_file_in(const char *directory, const char *name, struct text_file *file)
+{
+    char *path;
+    if (asprintf(&path, "%s/%s", directory, name) < 0)
+        return status_set(STATUS_FAILED, "no memory for a name");
+    const enum status status = text_file_open(path, file);
+    free(path);
+    return status;
 }
 
 enum status text_file_open_named(const char *path, struct text_file *file)

@@ -17,6 +17,7 @@ struct text_file {
 /* Begin a file for `path`, where it replaces what has that name: a link is not followed. Errors: STATUS_INVALID naming
    it when it cannot be written, STATUS_FAILED on a full disk; nothing to close then. */
 enum status text_file_open(const char *path, struct text_file *file);
+enum status text_file_in(const char *directory, const char *name, struct text_file *file);
 /* The same for a path that the user gave: a link stays, and its target is replaced; what is no regular file is written
    directly. */
 enum status text_file_open_named(const char *path, struct text_file *file);

@@ -92,7 +92,7 @@ enum status exchange_open(struct exchange *exchange, const struct problem *probl
     enum status status = problem_write(path, problem);
     if (status != STATUS_OK)
         return status;
-    exchange->bytes = acquisition_samples(a) * precision_size(problem->precision);
+    exchange->bytes = samples_bytes(a, problem->precision);
     snprintf(text, sizeof text, "{'descr': '<c%zu', 'fortran_order': False, 'shape': (%d, %d, %d), }",
              precision_size(problem->precision), a->pings, a->receivers, a->samples);
     snprintf(head, sizeof head, "\x93NUMPY\x01%c%c%c%-117s\n", '\0', HEAD - 10, '\0', text);

@@ -71,7 +71,7 @@ static enum status link_echoes(struct link *link, enum precision precision)
     const enum status status = echoes_allocate(&link->acquisition, precision, &link->echoes);
     if (status != STATUS_OK)
         return status;
-    memset((void *)link->echoes.samples, 0xff, acquisition_samples(&link->acquisition) * precision_size(precision));
+    memset((void *)link->echoes.samples, 0xff, samples_bytes(&link->acquisition, precision));
     return STATUS_OK;
 }
 

@@ -14,8 +14,7 @@ enum { FENCE = 4096, FENCE_BYTE = 0xa5 }; /* how many, and what they hold */
 
 static size_t patch_bytes(const struct image *image, int k)
 {
-    const struct grid *patch = &image->patches[k];
-    return size_product((size_t)patch->x_count, (size_t)patch->r_count, 1, precision_size(image->precision));
+    return grid_pixels(&image->patches[k]) * precision_size(image->precision);
 }
 
 /* Ahead of each patch and behind: a guest that writes beside its image would break what others do later. */

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "backprojection/pairs/pairs.h"
 #include "common/turns.h"
 #include "echoes/echo_data.h"
 #include "scene/random.h"
@@ -251,11 +252,8 @@ static enum status patches_take(const struct problem *problem, struct probe *pro
 enum status probe_make(const struct spec *exact, const struct problem *problem, const struct echoes *echoes,
                        const struct image *pilot, const struct region *region, struct probe *probe)
 {
-    double pixels = 0;
-    for (int k = 0; k < problem->patch_count; k++)
-        pixels += (double)problem->patches[k].r_count * problem->patches[k].x_count;
-    enum status status = pixels <= WHOLE && region->count == 0 ? patches_take(problem, probe)
-                                                               : segments_fill(problem, pilot, region, probe);
+    const bool whole = problem_pixels(problem) <= WHOLE && region->count == 0;
+    enum status status = whole ? patches_take(problem, probe) : segments_fill(problem, pilot, region, probe);
     if (status == STATUS_OK)
         status = probe_exact(exact, problem, echoes, probe);
     if (status != STATUS_OK)

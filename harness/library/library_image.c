@@ -68,8 +68,7 @@ static enum status image_fit(const struct sasbench_plan *plan, const struct imag
 {
     double largest = 0;
     for (int k = 0; k < image->patch_count; k++)
-        largest = fmax(largest, largest_part(image->pixels[k], PRECISION_DOUBLE,
-                                             (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count));
+        largest = fmax(largest, largest_part(image->pixels[k], PRECISION_DOUBLE, grid_pixels(&image->patches[k])));
     return single_holds(largest)
                ? STATUS_OK
                : status_set(STATUS_INVALID,
@@ -82,7 +81,7 @@ static enum status image_put(const struct sasbench_plan *plan, const struct imag
     const bool convert = image->precision != plan->spec.precision;
     const enum status status = convert ? image_fit(plan, image) : STATUS_OK;
     for (int k = 0; k < image->patch_count && status == STATUS_OK; k++) {
-        const size_t count = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count;
+        const size_t count = grid_pixels(&image->patches[k]);
         const double *both = image->pixels[k];
         float *single = pixels[k];
         if (!convert)

@@ -112,7 +112,7 @@ static enum status echoes_take(const double *samples, struct scene *scene)
         status = echoes_allocate(a, PRECISION_DOUBLE, &kept);
     if (status != STATUS_OK)
         return status;
-    memcpy((void *)kept.samples, samples, acquisition_samples(a) * sizeof(double complex));
+    memcpy((void *)kept.samples, samples, samples_bytes(a, PRECISION_DOUBLE));
     scene->recorded = (double complex *)kept.samples;
     return noise_measure(&given, &a->noise);
 }
@@ -277,7 +277,7 @@ static enum status pixels_take(const struct scene *from, const void *const *pixe
     if (from->recorded)
         scene->pulse_kind = from->acquisition.compressed ? PULSE_FLAT : PULSE_LFM;
     for (int k = 0; k < scene->patch_count; k++)
-        count += (size_t)scene->patches[k].r_count * (size_t)scene->patches[k].x_count;
+        count += grid_pixels(&scene->patches[k]);
     if (count > INT_MAX)
         return status_set(STATUS_INVALID, "%s: %zu pixels, must be at most %d", scene->name, count, INT_MAX);
     struct target *target = scene->targets = malloc(count * sizeof *target);
@@ -331,7 +331,7 @@ int sasbench_adjoint(struct sasbench_scene *scene, const void *samples, void *co
         status = simulation_adjoint(simulation, samples, sums);
     const double complex *from = sums;
     for (int k = 0; k < own.patch_count && status == STATUS_OK; k++) {
-        const size_t count = (size_t)own.patches[k].r_count * (size_t)own.patches[k].x_count;
+        const size_t count = grid_pixels(&own.patches[k]);
         memcpy(pixels[k], from, count * sizeof *from);
         from += count;
     }

@@ -108,7 +108,7 @@ static struct energies record_energies(const struct survey *survey, int index)
     struct energies energies = {0};
     for (int p = 0; p < survey->image->patch_count; p++) {
         const struct grid *g = &survey->image->patches[p];
-        const double pixels = (double)g->r_count * g->x_count, share = survey->visits * pixels / survey->pixels;
+        const double pixels = (double)grid_pixels(g), share = survey->visits * pixels / survey->pixels;
         const bool all = survey->visits >= survey->pixels;
         const int count = all ? (int)pixels : (int)ceil(share);
         struct energies sum = {0};

@@ -90,7 +90,7 @@ void guise_spoil(const struct image *image)
     for (int k = 0; k < image->patch_count; k++) {
         float complex *single = image->pixels[k];
         double complex *both = image->pixels[k];
-        const size_t count = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count;
+        const size_t count = grid_pixels(&image->patches[k]);
         for (size_t n = 0; n < count; n++)
             if (image->precision == PRECISION_FLOAT)
                 single[n] = (float complex)spoilt;

@@ -226,7 +226,7 @@ static enum status tiles_measure(const struct spec *spec, const struct spec *exa
 enum status tiled_measure(const struct spec *spec, const struct scene *scene, double memory, struct tiled_image *tiled)
 {
     const struct grid *grid = &scene->patches[0];
-    const double whole = (double)grid->r_count * grid->x_count * (double)precision_size(spec->precision);
+    const double whole = (double)grid_pixels(grid) * (double)precision_size(spec->precision);
     struct spec exact;
     struct tile_cost cost;
     *tiled =

@@ -149,11 +149,10 @@ static enum status seed_follow(int seed, const char *path, FILE *file, int *coun
 
 enum status rules_study(const char *directory)
 {
-    char path[4200], scene[4200];
+    char scene[4200];
     struct text_file file;
     int count = 0;
-    snprintf(path, sizeof path, "%s/%s", directory, RULES_FILE);
-    enum status status = text_file_open(path, &file);
+    enum status status = text_file_in(directory, RULES_FILE, &file);
     if (status != STATUS_OK)
         return status;
     fprintf(file.stream, "# sasbench rules on random scenes 1\n%s\n", header);

@@ -189,12 +189,10 @@ static enum status folder_show(struct page *page, const struct folder *folder)
 enum status report_write(const char *directory)
 {
     struct folder folder = {0};
-    char path[4096];
     struct text_file file;
-    snprintf(path, sizeof path, "%s/report.html", directory);
     enum status status = folder_read(directory, &folder);
     if (status == STATUS_OK)
-        status = text_file_open(path, &file);
+        status = text_file_in(directory, "report.html", &file);
     if (status == STATUS_OK) {
         struct page page = {.stream = file.stream};
         status = text_file_close(&file, folder_show(&page, &folder));

@@ -250,14 +250,12 @@ static enum status file_write(const struct merger *merger, int kind, int file, c
 {
     const struct csv *first = NULL;
     struct text_file text;
-    char path[4400];
     for (int s = merger->count - 1; s >= 0; s--)
         if (merger->sources[s].kind == kind && merger->sources[s].csv[file].path)
             first = &merger->sources[s].csv[file];
     if (!first)
         return STATUS_OK;
-    snprintf(path, sizeof path, "%s/%s", directory, files[file].name);
-    const enum status status = text_file_open(path, &text);
+    const enum status status = text_file_in(directory, files[file].name, &text);
     if (status != STATUS_OK)
         return status;
     comments_write(merger, kind, file, text.stream);

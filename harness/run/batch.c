@@ -87,7 +87,7 @@ static void heading_print(const struct scene *scene)
     double pixels = 0, imaged_m = 0, recorded_m = a->samples * a->sound_speed / (2 * a->fs);
     char what[160], size[60];
     for (int k = 0; k < scene->patch_count; k++) {
-        pixels += (double)scene->patches[k].r_count * scene->patches[k].x_count;
+        pixels += (double)grid_pixels(&scene->patches[k]);
         imaged_m += scene->patches[k].r_count * scene->patches[k].r_step;
     }
     if (scene->patch_count == 1)

@@ -69,7 +69,7 @@ enum status grid_check(const struct grid *grid, const char *place)
                               place, name, step, fmax(fabs(first), fabs(last)) * 4 * DBL_EPSILON, last);
         }
     }
-    double pixels = (double)grid->x_count * grid->r_count, most = BYTES_MAX / sizeof(double complex);
+    double pixels = (double)grid_pixels(grid), most = BYTES_MAX / sizeof(double complex);
     if (!(pixels <= most)) {
         return status_set(STATUS_INVALID, "%s: grid has %d x %d pixels, must be at most %.10g", place, grid->x_count,
                           grid->r_count, most);

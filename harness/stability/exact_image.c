@@ -10,7 +10,7 @@ size_t exact_pixels(int patch_count, const struct grid *patches)
 {
     size_t count = 0;
     for (int k = 0; k < patch_count; k++)
-        count += (size_t)patches[k].x_count * (size_t)patches[k].r_count;
+        count += grid_pixels(&patches[k]);
     return count;
 }
 
@@ -18,7 +18,7 @@ size_t exact_pixels(int patch_count, const struct grid *patches)
 static struct exact_point pixel_number(const struct grid *patches, size_t index)
 {
     const struct grid *patch = patches;
-    for (size_t count; index >= (count = (size_t)patch->x_count * (size_t)patch->r_count); patch++)
+    for (size_t count; index >= (count = grid_pixels(patch)); patch++)
         index -= count;
     return exact_pixel_of(patch, (int)(index / (size_t)patch->x_count), (int)(index % (size_t)patch->x_count));
 }

@@ -43,7 +43,7 @@ static enum status echoes_make(struct trial *trial, int unused)
     enum status status = scene_echoes(trial->scene, &echoes);
     if (status != STATUS_OK)
         return status;
-    memcpy(trial->samples, echoes.samples, acquisition_samples(&trial->scene->acquisition) * sizeof *trial->samples);
+    memcpy(trial->samples, echoes.samples, samples_bytes(&trial->scene->acquisition, PRECISION_DOUBLE));
     trial->note->exponent = echoes.exponent;
     echoes_free(&echoes);
     return STATUS_OK;

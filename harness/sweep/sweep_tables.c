@@ -123,9 +123,7 @@ static enum status scene_tables(const struct results *results, const char *name,
 static enum status table_open(const char *directory, int table, const struct csv *csv, struct text_file *file)
 {
     static const char *const keys[] = {"machine", "commit", "date", "threads"};
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", directory, tables[table].file);
-    enum status status = text_file_open(path, file);
+    enum status status = text_file_in(directory, tables[table].file, file);
     if (status != STATUS_OK)
         return status;
     fprintf(file->stream, "# %s\n", tables[table].format);

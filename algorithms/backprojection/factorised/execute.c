@@ -192,7 +192,7 @@ static void line_of_pixels(const struct factorised *plan, int subaperture, int p
     const struct problem *problem = &plan->bp.problem;
     const struct grid *grid = &problem->patches[patch];
     const struct pixel_line line = grid_line(grid, tree->along_x[patch], number);
-    const size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count, size = real_size(problem->precision);
+    const size_t pixels = grid_pixels(grid), size = real_size(problem->precision);
     const size_t receivers = (size_t)problem->acquisition->receivers;
     char *re = (char *)plan->sums[patch] + (size_t)number * (size_t)line.count * size, *im = re + pixels * size;
     struct spans spans;
@@ -276,7 +276,7 @@ enum status factorised_execute(struct factorised *plan, const struct echoes *ech
         plan->scratch[n].outside = 0;
     for (int k = 0; k < tree->problem.patch_count; k++) {
         const struct grid *grid = &tree->problem.patches[k];
-        memory_clear(plan->sums[k], 2 * (size_t)grid->x_count * (size_t)grid->r_count * size);
+        memory_clear(plan->sums[k], 2 * grid_pixels(grid) * size);
     }
     progress_part(0, 1, tree->first[tree->settings.stages]);
     for (int n = tree->first[tree->settings.stages - 1]; n < tree->first[tree->settings.stages]; n++)

@@ -106,8 +106,7 @@ static void sums_make(struct factorised *plan)
     const struct problem *problem = &plan->bp.problem;
     plan->sums = room(plan, (size_t)problem->patch_count, sizeof *plan->sums);
     for (int k = 0; plan->sums && k < problem->patch_count; k++)
-        plan->sums[k] = room(plan, 2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count,
-                             real_size(problem->precision));
+        plan->sums[k] = room(plan, 2 * grid_pixels(&problem->patches[k]), real_size(problem->precision));
 }
 
 static void pings_make(struct factorised *plan)

@@ -192,7 +192,7 @@ static enum status general_plan(struct bp *bp)
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *grid = &problem->patches[k];
         const struct ping_box *box = &general->boxes[a->pings / 2];
-        size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count;
+        size_t pixels = grid_pixels(grid);
         general->along_x[k] = lines_cost(box, grid, true, 1) < lines_cost(box, grid, false, 1);
         const struct pixel_window w = problem_window(problem, k);
         const size_t rows = (size_t)w.rows, columns = (size_t)w.columns;
@@ -266,7 +266,7 @@ static void sum_part(const struct bp_lines *lines, int k, struct line_part of, s
 {
     const struct general *general = lines->bp->state;
     const struct grid *grid = &lines->bp->problem.patches[k];
-    const size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count, size = real_size(lines->bp->problem.precision);
+    const size_t pixels = grid_pixels(grid), size = real_size(lines->bp->problem.precision);
     struct pixel_line line = grid_line(grid, general->along_x[k], of.number);
     const long long all = line.count;
     const int begin = (int)(all * of.part / of.parts), end = (int)(all * (of.part + 1) / of.parts);
@@ -293,8 +293,7 @@ static void sums_clear(const struct bp *bp, int k)
     const bool along_x = general->along_x[k];
     const struct pair_span lines = window_span(&window, along_x), shown = window_span(&window, !along_x);
     const size_t size = real_size(bp->problem.precision), count = (size_t)(along_x ? grid->x_count : grid->r_count);
-    const size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count,
-                 bytes = (size_t)(shown.end - shown.begin) * size;
+    const size_t pixels = grid_pixels(grid), bytes = (size_t)(shown.end - shown.begin) * size;
     for (int n = lines.begin; n < lines.end; n++) {
         char *re = (char *)general->sums[k] + ((size_t)n * count + (size_t)shown.begin) * size;
         memset(re, 0, bytes);

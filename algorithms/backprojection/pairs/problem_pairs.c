@@ -319,6 +319,6 @@ double problem_pixels(const struct problem *problem)
 {
     double pixels = 0;
     for (int k = 0; k < problem->patch_count; k++)
-        pixels += (double)problem->patches[k].x_count * problem->patches[k].r_count;
+        pixels += (double)grid_pixels(&problem->patches[k]);
     return pixels;
 }

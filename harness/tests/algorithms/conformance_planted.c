@@ -186,7 +186,7 @@ enum status execute_races(void *plan, const struct echoes *echoes, struct image 
 
 enum status execute_last_pixel(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
-    size_t last = (size_t)image->patches[0].x_count * (size_t)image->patches[0].r_count - 1;
+    size_t last = grid_pixels(&image->patches[0]) - 1;
     size_t size = image->precision == PRECISION_DOUBLE ? 16 : 8;
     unsigned char kept[16];
     memcpy(kept, (unsigned char *)image->pixels[0] + last * size, size);
@@ -237,7 +237,7 @@ enum status execute_first_patch(void *plan, const struct echoes *echoes, struct 
     const size_t size = image->precision == PRECISION_DOUBLE ? 16 : 8;
     enum status status = bp_execute(plan, echoes, image, stages);
     for (int k = 1; k < image->patch_count; k++)
-        memset(image->pixels[k], 0, size * (size_t)image->patches[k].x_count * (size_t)image->patches[k].r_count);
+        memset(image->pixels[k], 0, size * grid_pixels(&image->patches[k]));
     return status;
 }
 
@@ -280,7 +280,7 @@ enum status execute_memoised(void *plan, const struct echoes *echoes, struct ima
 {
     static const void *samples, *of;
     static double kept[2 * 2000];
-    const size_t size = sizeof(double) * 2 * (size_t)image->patches[0].x_count * (size_t)image->patches[0].r_count;
+    const size_t size = sizeof(double) * 2 * grid_pixels(&image->patches[0]);
     assert_true(size <= sizeof kept);
     if (samples == echoes->samples && of == plan && image->precision == PRECISION_DOUBLE && image->patch_count == 1) {
         memcpy(image->pixels[0], kept, size);

@@ -130,7 +130,7 @@ static void naive_sums(void **state)
         if ((double)pairs != pairs_count(&problem))
             fail_msg("seed %d: %lld pairs by definition, %.0f counted", (int)seed, pairs, pairs_count(&problem));
         total += (double)pairs;
-        possible += (double)grid.x_count * grid.r_count * a.pings * a.receivers;
+        possible += (double)grid_pixels(&grid) * a.pings * a.receivers;
         image_free(&image);
         echoes_free(&echoes);
         acquisition_free(&a);

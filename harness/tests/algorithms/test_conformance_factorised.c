@@ -31,8 +31,7 @@ static void images_are_read(void **state)
         const struct problem problem = problem_make(&a, 1, &factorised_grids[kind], PRECISION_DOUBLE);
         const struct tree_settings settings = {1e-2, 4, 4, 2};
         assert_int_equal(factorised_plan(&problem, &settings, &plan), STATUS_OK);
-        const double all = (double)factorised_grids[kind].x_count * factorised_grids[kind].r_count * a.pings
-                           * a.receivers,
+        const double all = (double)grid_pixels(&factorised_grids[kind]) * a.pings * a.receivers,
                      direct = plan->direct / all;
         print_message("%s: %.3g of the pairs are summed from records\n", factorised_names[kind], direct);
         if (kind == SIDES) /* near pixels, seen far off the axis */
@@ -71,7 +70,7 @@ static void bits_and_precisions(void **state)
                 continue;
             }
             assert_memory_equal(image.pixels[0], first[precision].pixels[0],
-                                (size_t)grid->x_count * (size_t)grid->r_count * precision_size(image.precision));
+                                grid_pixels(grid) * precision_size(image.precision));
             image_free(&image);
         }
     for (size_t k = 0; k < sizeof isas / sizeof *isas; k++) /* where the machine has less, the most that it has */

@@ -224,7 +224,7 @@ static void auto_takes_the_least(void **state)
         assert_int_equal(support_image(pairs[k].automatic, problem, &echoes, &images[0]), STATUS_OK);
         assert_int_equal(support_image(pairs[k].chosen, problem, &echoes, &images[1]), STATUS_OK);
         assert_memory_equal(images[0].pixels[0], images[1].pixels[0],
-                            (size_t)grid.x_count * (size_t)grid.r_count * precision_size(images[0].precision));
+                            grid_pixels(&grid) * precision_size(images[0].precision));
         image_free(&images[0]);
         image_free(&images[1]);
     }

@@ -63,7 +63,7 @@ static void error_of_amplitude(double amplitude, const char *algorithm, char of[
     }
 }
 
-/* A power of two changes no digit of an error, nor brings a warning, though the samples lie at the ends of the range. */
+/* A power of two changes no digit of an error and brings no warning, though samples lie at the ends of the range. */
 static void extreme_echoes_are_measured(void **state)
 {
     (void)state;

@@ -105,7 +105,7 @@ static char *pixels_read(const char *name, size_t *size)
     struct grid grid;
     double complex *pixels;
     assert_int_equal(image_file_read(path_of(name), &grid, &pixels), STATUS_OK);
-    *size = (size_t)grid.x_count * (size_t)grid.r_count * sizeof *pixels;
+    *size = grid_pixels(&grid) * sizeof *pixels;
     return (char *)pixels;
 }
 

@@ -31,7 +31,7 @@ static void npy_write(const char *name, const struct image *image, enum layout l
     const bool columns = layout == COLUMNS;
     const struct grid *grid = &image->patches[0];
     const size_t size = columns ? sizeof(double complex) : sizeof(float complex);
-    unsigned char *bytes = calloc(128 + (size_t)grid->r_count * (size_t)grid->x_count, size);
+    unsigned char *bytes = calloc(128 + grid_pixels(grid), size);
     assert_non_null(bytes);
     memcpy(bytes, "\x93NUMPY\1\0\x76\0", 10);
     memset(bytes + 10, ' ', 118);

@@ -27,7 +27,7 @@ static void assert_same_image(const char *one, const char *other)
     assert_int_equal(image_file_read(path_of(other), &b, &others), STATUS_OK);
     assert_true(a.x_first == b.x_first && a.x_step == b.x_step && a.r_first == b.r_first && a.r_step == b.r_step);
     assert_true(a.x_count == b.x_count && a.r_count == b.r_count && a.angle_rad == b.angle_rad);
-    assert_memory_equal(pixels, others, (size_t)a.x_count * (size_t)a.r_count * sizeof *pixels);
+    assert_memory_equal(pixels, others, grid_pixels(&a) * sizeof *pixels);
     free(pixels);
     free(others);
 }

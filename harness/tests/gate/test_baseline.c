@@ -127,7 +127,7 @@ static enum status plain_execute(void *plan, const struct echoes *echoes, struct
     const struct grid *grid = &image->patches[0];
     double complex *pixels = image->pixels[0];
     (void)plan, (void)stages;
-    memset(pixels, 0, (size_t)grid->r_count * (size_t)grid->x_count * sizeof *pixels);
+    memset(pixels, 0, grid_pixels(grid) * sizeof *pixels);
     for (int pair = 0; pair < a->pings * a->receivers; pair++) {
         int ping = pair / a->receivers, receiver = pair % a->receivers;
         const double complex *s = (const double complex *)echoes->samples + (size_t)pair * (size_t)a->samples;

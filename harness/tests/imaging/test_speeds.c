@@ -49,7 +49,7 @@ static void images_are_those_of_the_true_speeds(void **state)
     assert_int_equal(scene_load(name, SASBENCH_ROOT "/scenes", &scene), STATUS_OK);
     struct acquisition *a = &scene.acquisition;
     const size_t each = (size_t)a->receivers * (size_t)a->samples;
-    const size_t pixels = (size_t)scene.patches[0].x_count * (size_t)scene.patches[0].r_count;
+    const size_t pixels = grid_pixels(&scene.patches[0]);
     double complex *all = calloc((size_t)a->pings * each, sizeof *all), *truth = calloc(pixels, sizeof *truth);
     float complex *single = calloc((size_t)a->pings * each, sizeof *single);
     double speeds[PINGS_MOST];

@@ -34,9 +34,7 @@ static enum status planted_execute(void *plan, const struct echoes *echoes, stru
 {
     (void)plan, (void)echoes;
     for (int k = 0; k < image->patch_count; k++)
-        memset(image->pixels[k], 0,
-               (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count
-                   * precision_size(image->precision));
+        memset(image->pixels[k], 0, grid_pixels(&image->patches[k]) * precision_size(image->precision));
     if (wanted == CRASH_NULL)
         write_nowhere();
     if (wanted == CRASH_ABORT)

@@ -63,7 +63,7 @@ static void shipped_scenes_load(void **state)
         double pixels = 0, pairs = (double)scene.acquisition.pings * scene.acquisition.receivers;
         const struct grid *compared = scene.reference_count > 0 ? scene.reference_patches : scene.patches;
         for (int k = 0; k < (scene.reference_count > 0 ? scene.reference_count : scene.patch_count); k++) {
-            pixels += (double)compared[k].x_count * compared[k].r_count;
+            pixels += (double)grid_pixels(&compared[k]);
         }
         assert_true(scene.full_size || pixels * pairs < 1e8); /* the exact image stays a matter of seconds */
         if (strncmp(names[i], "extreme/", 8) != 0) {
