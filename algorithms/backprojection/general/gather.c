@@ -182,11 +182,12 @@ INLINE void take_branches_apart(int branches, struct record record, size_t apart
     *im = y;
 }
 
-/* How a value is read: nearest, linear, or from `branches` > 1. Constants where inlined. */
+/* How a value is read: nearest, linear, or from `branches` > 1. Constants where inlined. `edges`: the loading of
+   vectors with pixels that are not a record's own, where slopes may be steeper. */
 struct taking {
     bool line;
     int branches;
-    enum loading loading;
+    enum loading loading, edges;
 };
 
 /* Add a record's values to LANES pixels from i on. */
@@ -219,62 +220,117 @@ INLINE void take(struct taking taking, struct record record, size_t apart, const
     *im = *im + x * s + y * c;
 }
 
-/* One run of each of a group's records. */
-INLINE void add_taken(struct taking taking, const struct receiver_group *group, struct run *runs,
-                      struct pair_span pixels, real *re, real *im)
+/* The pixels that record g of a group is added to, of a run's `count` from pixel `first` of the line on. */
+INLINE struct pair_span own_pixels(const struct receiver_group *group, int g, int first, int count)
 {
+    if (!group->within)
+        return (struct pair_span){0, count};
+    const int begin = group->within[g].begin - first, end = group->within[g].end - first;
+    return (struct pair_span){begin < 0 ? 0 : begin, end < count ? end : count};
+}
+
+/* One run of each of a group's records, by the places that they read. */
+struct taken {
+    struct run *runs;
     struct record from[GROUP_RECEIVERS];
-    const struct bp_layout layout = group->layout;
-    const int count = pixels.end, receivers = group->receivers;
-    int i = pixels.begin;
+    struct pair_span own[GROUP_RECEIVERS], common; /* pixels of each, and of all */
+    int count;                                     /* pixels */
+    real *re, *im;
+};
+
+typedef __typeof__((vector_real){0} < (vector_real){0}) vector_mask;
+
+/* `added` where the mask is set. */
+INLINE vector_real masked(vector_mask mask, vector_real added, vector_real other)
+{
+    return (vector_real)(((vector_mask)added & mask) | ((vector_mask)other & ~mask));
+}
+
+/* Add to LANES pixels from i on that are not pixels of all records, or fewer at the run's end; as a whole vector, so
+   that a pixel's bits do not depend on where runs begin and end. */
+INLINE void add_edge(struct taking taking, const struct receiver_group *group, const struct taken *taken, int i)
+{
+    const int rest = taken->count - i, left = rest < LANES ? rest : LANES;
+    const vector_real lane = ALL(LANE);
+    vector_real x = {0}, y = {0};
+    if (left == LANES) {
+        x = *at(taken->re + i);
+        y = *at(taken->im + i);
+    }
+    for (int k = 0; left < LANES && k < left; k++) {
+        x[k] = taken->re[i + k];
+        y[k] = taken->im[i + k];
+    }
+    taking.loading = taking.edges;
+    for (int g = 0; g < group->receivers; g++) {
+        struct run *run = &taken->runs[g];
+        const int begin = taken->own[g].begin - i, end = taken->own[g].end - i;
+        vector_real re = x, im = y;
+        if (begin >= left || end <= 0 || begin >= end)
+            continue;
+        for (int k = left; k < LANES; k++) { /* the last vector's other pixels read valid places */
+            run->sample[i + k] = run->sample[i + left - 1];
+            run->rest[i + k] = run->cycles[i + k] = 0;
+        }
+        take(taking, taken->from[g], group->layout.apart, run, i, &re, &im);
+        const vector_mask mask = (lane >= (real)begin) & (lane < (real)end);
+        x = masked(mask, re, x);
+        y = masked(mask, im, y);
+    }
+    if (left == LANES) {
+        *at(taken->re + i) = x;
+        *at(taken->im + i) = y;
+    }
+    for (int k = 0; left < LANES && k < left; k++) {
+        taken->re[i + k] = x[k];
+        taken->im[i + k] = y[k];
+    }
+}
+
+INLINE void add_taken(struct taking taking, const struct receiver_group *group, int first, int count, struct run *runs)
+{
+    struct taken taken = {runs, .common = {0, count}, .count = count, .re = group->re + first, .im = group->im + first};
+    const int receivers = group->receivers;
+    const size_t apart = group->layout.apart;
     for (int g = 0; g < receivers; g++) {
         const int place = group->table->origin + group->table->first + runs[g].base;
         const bool whole = taking.branches > 1;
-        from[g].values = group->row + (size_t)g * layout.record + (whole ? 0 : place);
-        from[g].place = whole ? place : 0;
-        OPAQUE(from[g].values);
+        taken.from[g].values = group->row + (size_t)g * group->layout.record + (whole ? 0 : place);
+        taken.from[g].place = whole ? place : 0;
+        OPAQUE(taken.from[g].values);
+        const struct pair_span own = taken.own[g] = own_pixels(group, g, first, count);
+        taken.common.begin = own.begin > taken.common.begin ? own.begin : taken.common.begin;
+        taken.common.end = own.end < taken.common.end ? own.end : taken.common.end;
     }
-    for (; i <= count - LANES; i += LANES) {
-        vector_real x = *at(re + i), y = *at(im + i);
-        for (int g = 0; g < receivers; g++)
-            take(taking, from[g], layout.apart, &runs[g], i, &x, &y);
-        *at(re + i) = x;
-        *at(im + i) = y;
-    }
-    if (i == count)
-        return;
-    vector_real x = {0}, y = {0};
-    for (int k = 0; i + k < count; k++) { /* as whole vectors: a pixel's bits do not depend on where runs end */
-        x[k] = re[i + k];
-        y[k] = im[i + k];
-    }
-    for (int g = 0; g < receivers; g++) {
-        for (int k = count; k < i + LANES; k++) { /* the last vector's other pixels read valid places */
-            runs[g].sample[k] = runs[g].sample[count - 1];
-            runs[g].rest[k] = runs[g].cycles[k] = 0;
+    const struct pair_span common = taken.common;
+    real *const sum_re = taken.re, *const sum_im = taken.im;
+    for (int i = 0; i < count; i += LANES) {
+        for (; i >= common.begin && i + LANES <= common.end; i += LANES) {
+            vector_real x = *at(sum_re + i), y = *at(sum_im + i);
+            for (int g = 0; g < receivers; g++)
+                take(taking, taken.from[g], apart, &runs[g], i, &x, &y);
+            *at(sum_re + i) = x;
+            *at(sum_im + i) = y;
         }
-        take(taking, from[g], layout.apart, &runs[g], i, &x, &y);
-    }
-    for (int k = 0; i + k < count; k++) {
-        re[i + k] = x[k];
-        im[i + k] = y[k];
+        if (i < count)
+            add_edge(taking, group, &taken, i);
     }
 }
 
 /* Ways of taking as functions of their own: where several are inlined into one function, the compiler's choice of
    registers for each depends on the others. It leaves out those that no table names. */
-typedef void adding(const struct receiver_group *group, struct run *runs, struct pair_span pixels, real *re, real *im);
-#define ADDING(name, line, branches, loading)                                                                          \
-    static __attribute__((noinline)) void name(const struct receiver_group *group, struct run *runs,                   \
-                                               struct pair_span pixels, real *re, real *im)                            \
+typedef void adding(const struct receiver_group *group, int first, int count, struct run *runs);
+#define ADDING(name, line, branches, loading, edges)                                                                   \
+    static __attribute__((noinline)) void name(const struct receiver_group *group, int first, int count,               \
+                                               struct run *runs)                                                       \
     {                                                                                                                  \
-        add_taken((struct taking){line, branches, loading}, group, runs, pixels, re, im);                              \
+        add_taken((struct taking){line, branches, loading, edges}, group, first, count, runs);                         \
     }
 #define WAYS(name, line, branches)                                                                                     \
-    ADDING(name##_apart, line, branches, APART)                                                                        \
-    ADDING(name##_fours, line, branches, FOURS)                                                                        \
-    ADDING(name##_together, line, branches, TOGETHER)                                                                  \
-    ADDING(name##_exact, line, branches, EXACT)
+    ADDING(name##_apart, line, branches, APART, APART)                                                                 \
+    ADDING(name##_fours, line, branches, FOURS, FOURS)                                                                 \
+    ADDING(name##_together, line, branches, TOGETHER, (branches) > 1 && !BLOCKS ? TOGETHER : FOURS)                    \
+    ADDING(name##_exact, line, branches, EXACT, EXACT)
 WAYS(nearest, false, 1)
 WAYS(line, true, 1)
 WAYS(three, false, 3)
@@ -339,23 +395,24 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
     }
 }
 
-void BP_GATHER(const struct receiver_group *group, enum loading loading, struct pair_span pixels, struct run *runs,
-               real *re, real *im)
+void BP_GATHER(const struct receiver_group *group, enum loading loading, int first, int count, struct run *runs)
 {
     const struct bp_table *table = group->table;
     if (table->reading == BP_NEAREST || table->reading == BP_LINE || table->reading == BP_BRANCHES) {
-        ways_choose(table)[loading](group, runs, pixels, re, im);
+        ways_choose(table)[loading](group, first, count, runs);
         return;
     }
     const size_t length = group->layout.apart;
     const real *row = group->row + table->origin + table->first;
+    real *re = group->re + first, *im = group->im + first;
     for (int g = 0; g < group->receivers; g++, row += group->layout.record) {
         const real *from = row + runs[g].base;
+        const struct pair_span own = own_pixels(group, g, first, count);
         switch (table->taps) { /* the shipped kernels unroll, any other length works as well */
-        case 8: add_taps(table, 8, from, from + length, pixels, &runs[g], re, im); break;
-        case 16: add_taps(table, 16, from, from + length, pixels, &runs[g], re, im); break;
-        case 20: add_taps(table, 20, from, from + length, pixels, &runs[g], re, im); break;
-        default: add_taps(table, table->taps, from, from + length, pixels, &runs[g], re, im); break;
+        case 8: add_taps(table, 8, from, from + length, own, &runs[g], re, im); break;
+        case 16: add_taps(table, 16, from, from + length, own, &runs[g], re, im); break;
+        case 20: add_taps(table, 20, from, from + length, own, &runs[g], re, im); break;
+        default: add_taps(table, table->taps, from, from + length, own, &runs[g], re, im); break;
         }
     }
 }

@@ -155,11 +155,10 @@ struct receiver_group {
 #define BP_RUNS REAL_ISA_NAME(bp_runs)
 void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, double (*tau)[GROUP_RECEIVERS]);
 
-/* Add pixels [begin, end) of one run of each of the group's records to the sums; re[0] is the run's first pixel.
-   Overwrites the runs behind these pixels. */
+/* Add a run of each of the group's records, `count` pixels from pixel `first` of the line on: to pixels that the record
+   is within. Overwrites the runs behind these pixels. */
 #define BP_GATHER REAL_ISA_NAME(bp_gather)
-void BP_GATHER(const struct receiver_group *group, enum loading loading, struct pair_span pixels, struct run *runs,
-               real *re, real *im);
+void BP_GATHER(const struct receiver_group *group, enum loading loading, int first, int count, struct run *runs);
 
 /* Chebyshev points of a block: its middle -+ these half lengths. */
 static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -0.25881904510252076,
@@ -182,7 +181,8 @@ INLINE vector_real *at(const real *values)
 }
 
 /* PART: the order of pixels in the parts of a vector from which one shuffle takes all low halves (EVEN) or all high
-   ones (ODD) in order. ALL: all pixels in order. */
+   ones (ODD) in order. ALL: all pixels in order, of which LANE is the number. */
+#define LANE(n) n
 #if REAL_DOUBLE
 #define ALL(v) PART(v, 0)
 #if VECTOR_BYTES == 64

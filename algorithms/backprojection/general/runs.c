@@ -81,7 +81,6 @@ INLINE void quintics(double (*tau)[GROUP_RECEIVERS], const struct scale *scale, 
     }
 }
 
-#define LANE(n) n
 #define LOW(v)  (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
 #define HIGH(v) (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
 /* The nearest samples, the distances from them, and phases as fractions of a cycle: of fixed-point numbers, or where
@@ -298,56 +297,17 @@ INLINE void runs_fixed(const struct receiver_group *group, double (*quintic)[GRO
     }
 }
 
-/* The part of a run's `count` pixels, from pixel `first` of the line on, that lies within a span. */
-INLINE struct pair_span part_within(struct pair_span within, int first, int count)
-{
-    const int begin = within.begin - first, end = within.end - first;
-    return (struct pair_span){begin < 0 ? 0 : begin < count ? begin : count, end > count ? count : end < 0 ? 0 : end};
-}
-
-/* Records of several pings are added together to pixels of all pings, and one by one to those on either side. */
-static void gather_parts(const struct receiver_group *group, enum loading loading, int first, int count,
-                         struct run *runs)
-{
-    real *re = group->re + first, *im = group->im + first;
-    struct pair_span common = {0, count}, own[GROUP_RECEIVERS];
-    for (int g = 0; g < group->receivers; g++) {
-        own[g] = part_within(group->within[g], first, count);
-        common.begin = own[g].begin > common.begin ? own[g].begin : common.begin;
-        common.end = own[g].end < common.end ? own[g].end : common.end;
-    }
-    if (!(common.begin < common.end))
-        common.begin = common.end = count;
-    struct receiver_group one = *group;
-    one.receivers = 1;
-    /* From the run's end on, as values behind a part may change. */
-    for (int part = 0; part < 3; part++) {
-        if (part == 1 && common.begin < common.end)
-            BP_GATHER(group, loading, common, runs, re, im);
-        one.row = group->row;
-        for (int g = 0; part != 1 && g < group->receivers; g++, one.row += one.layout.record) {
-            struct pair_span pixels = own[g];
-            if (part == 0)
-                pixels.begin = common.end;
-            else
-                pixels.end = pixels.end < common.begin ? pixels.end : common.begin;
-            if (pixels.begin < pixels.end)
-                BP_GATHER(&one, loading, pixels, &runs[g], re, im);
-        }
-    }
-}
-
-/* The most points between neighbouring pixels that a group's records are added to: as delays are convex along a line,
-   at one of either end of a block, or of a record's own pixels in it. */
-INLINE double slope_within(const struct receiver_group *group, const struct bp_block *block, double middle,
-                           double (*c)[GROUP_RECEIVERS])
+/* The most points between neighbouring pixels of a block, or of the records' own pixels in it: as delays are convex
+   along a line, at one of either end. */
+INLINE double slope_most(const struct receiver_group *group, const struct bp_block *block, bool own, double middle,
+                         double (*c)[GROUP_RECEIVERS])
 {
     double slope = 0;
     for (int end = 0; end < 2; end++) {
         double u[GROUP_RECEIVERS], slopes[GROUP_RECEIVERS];
         for (int g = 0; g < GROUP_RECEIVERS; g++) {
             int pixel = end ? block->end - 1 : block->begin;
-            if (group->within && g < group->receivers) {
+            if (own && g < group->receivers) {
                 const struct pair_span within = group->within[g];
                 pixel = pixel > within.begin ? pixel : within.begin;
                 pixel = pixel < within.end ? pixel : within.end - 1;
@@ -371,9 +331,12 @@ void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, d
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
     double slope, bend;
     quintics(tau, group->scale, half, c, &slope, &bend);
-    const enum loading loading = loading_choose(group->table->reading, slope_within(group, block, middle, c));
+    const enum bp_reading reading = group->table->reading;
+    enum loading loading = loading_choose(reading, slope_most(group, block, false, middle, c));
+    if (loading == FOURS && group->within) /* pixels that are not all records' take FOURS nevertheless */
+        loading = loading_choose(reading, slope_most(group, block, true, middle, c));
     /* Cubics have 32 bits for the whole part of a point. */
-    const bool fits = group->table->reading == BP_CUBICS || slope * RUN_PIXELS <= POINTS_MOST;
+    const bool fits = reading == BP_CUBICS || slope * RUN_PIXELS <= POINTS_MOST;
     int longest = fits ? RUN_PIXELS : (int)fmax(1, POINTS_MOST / slope);
 #if WINDOWS
     const int flat = flat_longest(group, loading, bend);
@@ -389,9 +352,6 @@ void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, d
         else
 #endif
             runs_fixed(group, c, first - middle, count, runs);
-        if (group->within)
-            gather_parts(group, loading, first, count, runs);
-        else
-            BP_GATHER(group, loading, (struct pair_span){0, count}, runs, group->re + first, group->im + first);
+        BP_GATHER(group, loading, first, count, runs);
     }
 }

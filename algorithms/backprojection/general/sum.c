@@ -136,8 +136,10 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
                                                         .receivers = 1,
                                                         .row =
                                                             (const real *)ping->rows + (size_t)m * ping->layout.record,
-                                                        .layout = ping->layout};
-            BP_GATHER(&one_receiver, EXACT, (struct pair_span){0, count}, &run, sum->re + first, sum->im + first);
+                                                        .layout = ping->layout,
+                                                        .re = sum->re,
+                                                        .im = sum->im};
+            BP_GATHER(&one_receiver, EXACT, first, count, &run);
         }
     }
 }

@@ -40,8 +40,8 @@ static bool inside_cone(const struct cone *cone, const struct pixel_line *line, 
 
 /* Where the line meets the cone, in pixels, the lesser first; NaN where it does not. Counted from the point nearest to
    the apex, where |along + slope s| = limit sqrt(s^2 + across^2) is a quadratic whose discriminant needs no difference
-   of large terms. */
-static void cone_roots(const struct cone *cone, const struct pixel_line *line, double root[2])
+   of large terms. True if pixels between them are the inside ones. */
+static bool cone_roots(const struct cone *cone, const struct pixel_line *line, double root[2])
 {
     const bool along_x = line->x_step > 0;
     const struct vector tx = cone->tx, h = cone->normal;
@@ -56,6 +56,7 @@ static void cone_roots(const struct cone *cone, const struct pixel_line *line, d
     const double q = -(half + copysign(sqrt(discriminant), half)), first = q / qa, second = q != 0 ? qc / q : first;
     root[0] = foot + fmin(first, second) / step;
     root[1] = foot + fmax(first, second) / step;
+    return qa >= 0;
 }
 
 /* Append pixels [begin, end), behind the others. Only rounding can make a third span: it joins the second. */
@@ -91,7 +92,7 @@ int pair_spans(const struct acquisition *a, int ping, struct vector h, const str
         spans[0] = (struct pair_span){0, n};
         return 1;
     }
-    cone_roots(&cone, line, root);
+    const bool between = cone_roots(&cone, line, root), none = isnan(root[0]);
     for (int k = 0; k < 3; k++) {
         const bool met = k < 2 && root[k] > -2 && root[k] < n + 1.0;
         if (k < 2 && !met)
@@ -100,7 +101,9 @@ int pair_spans(const struct acquisition *a, int ping, struct vector h, const str
         const bool clear = rest > NEAR_PIXEL && rest < 1 - NEAR_PIXEL && root[1] - root[0] > APART;
         const int begin = met ? pixel_between(clear ? whole + 1 : whole - 1, next, n) : n;
         const int end = met ? pixel_between(clear ? whole + 1 : whole + 3, begin, n) : n;
-        if (next < begin && inside_cone(&cone, line, next + (begin - next) / 2))
+        const int middle = next + (begin - next) / 2;
+        if (next < begin
+            && (none ? inside_cone(&cone, line, middle) : between == ((root[0] < middle) != (root[1] < middle))))
             count = span_add(spans, count, next, begin);
         for (next = begin; next < end; next++)
             if (inside_cone(&cone, line, next))
