@@ -99,26 +99,23 @@ static enum status file_finish(struct tiles *tiles, bool *sealed)
     return status;
 }
 
-static enum status tiles_form(const struct task *task, const struct shard *shard, const struct scene *scene,
-                              struct tiles *tiles)
+static enum status tiles_form(const struct spec *spec, const struct shard *shard, const struct scene *scene,
+                              struct tile_echoes *held, struct tiles *tiles)
 {
-    const struct spec *spec = &task->specs[0];
     const int count = tiles_count(tiles), before = tiles_done(tiles);
-    struct tile_echoes held = {.has = NULL};
-    enum status status = before < count ? tile_echoes_open(scene, spec->precision, &held) : STATUS_OK;
+    enum status status = STATUS_OK;
     if (before > 0 && ranks_number() == 0)
         printf("%s: %d of %d tiles were done\n", tiles->path, before, count);
     for (int n = -1; status == STATUS_OK && (n = tile_next(tiles, shard, n)) >= 0;) {
         progress_line(false, "%s: tile %d of %d by %s", scene->name, n + 1, count, spec->algorithm->name);
         struct tile tile;
-        status = tile_form(spec, scene, &held, tiles, n, &tile);
+        status = tile_form(spec, scene, held, tiles, n, &tile);
         if (status == STATUS_OK) {
             status = tiles_write(tiles, n, tile.image.pixels[0]);
             tile_free(&tile);
         }
     }
     progress_line_clear();
-    tile_echoes_close(&held);
     return status;
 }
 
@@ -198,6 +195,7 @@ enum status image_tiles(const struct task *task, const struct scene *scene, cons
     struct tiles tiles = {.path = task->output, .grid = scene->patches[0], .precision = spec->precision};
     char settings[1400];
     struct shard shard;
+    struct tile_echoes held;
     bool sealed = false;
     enum status status = tiled_check("image", spec, scene);
     if (status == STATUS_OK)
@@ -208,17 +206,22 @@ enum status image_tiles(const struct task *task, const struct scene *scene, cons
         status = tile_try(spec, scene, &tiles);
     if (status != STATUS_OK)
         return status;
-    settings_format(task, scene, origin, settings, sizeof settings);
-    status = file_open(&tiles, &shard, settings, origin);
-    if (status != STATUS_OK)
-        return status;
     const double begin = seconds_now();
-    status = tiles_form(task, &shard, scene, &tiles);
+    settings_format(task, scene, origin, settings, sizeof settings);
+    status = tile_echoes_open(scene, spec->precision, &held); /* what is refused here leaves no file */
+    if (status == STATUS_OK)
+        status = file_open(&tiles, &shard, settings, origin);
+    if (status != STATUS_OK) {
+        tile_echoes_close(&held);
+        return status;
+    }
+    status = tiles_form(spec, &shard, scene, &held, &tiles);
     if (status == STATUS_OK)
         status = file_finish(&tiles, &sealed);
     if (status == STATUS_OK && sealed)
         printf("%s: %s of %s, %d tiles, %s\n", task->output, origin->algorithm, scene->name, tiles_count(&tiles),
                cell_time(seconds_now() - begin).text);
     tiles_close(&tiles);
+    tile_echoes_close(&held);
     return status;
 }

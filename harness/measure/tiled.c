@@ -30,8 +30,9 @@ static enum status range_check(double largest, enum precision precision)
     const double reach = precision == PRECISION_DOUBLE ? 0x1p400 : 0x1p40;
     return !(largest > 0) || (largest >= 1 / reach && largest <= reach)
                ? STATUS_OK
-               : status_set(STATUS_UNSUPPORTED, "tiles: the largest sample is %.3g, must be from %.3g to %.3g", largest,
-                            1 / reach, reach);
+               : status_set(STATUS_UNSUPPORTED, "tiles: the largest sample is %.3g, must be from %.3g to %.3g in %s%s",
+                            largest, 1 / reach, reach, precision_name(precision),
+                            precision == PRECISION_DOUBLE ? "" : "; precision=double holds more");
 }
 
 enum status tile_echoes_open(const struct scene *scene, enum precision precision, struct tile_echoes *held)
@@ -44,6 +45,11 @@ enum status tile_echoes_open(const struct scene *scene, enum precision precision
         enum status status = scene_echoes(scene, &from);
         if (status == STATUS_OK)
             status = echoes_convert(&from, precision, &held->echoes);
+        if (status == STATUS_OK && precision == PRECISION_FLOAT && held->echoes.exponent != 0)
+            status = status_set(STATUS_UNSUPPORTED,
+                                "tiles: float does not hold the amplitudes of %s's echoes; "
+                                "precision=double does",
+                                scene->name);
         echoes_free(&from);
         return status;
     }
@@ -135,9 +141,6 @@ enum status tile_form(const struct spec *spec, const struct scene *scene, struct
     }
     if (status == STATUS_OK)
         status = imaging_finish(&tile->imaging, &held->echoes, &tile->image);
-    if (status == STATUS_OK && tile->image.precision != spec->precision)
-        status = status_set(STATUS_UNSUPPORTED, "tiles: float does not hold these echoes' amplitudes; "
-                                                "precision=double does");
     if (status != STATUS_OK)
         tile_free(tile);
     return status;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "files/csv.h"
 #include "tests/command/program.h"
@@ -37,14 +38,22 @@ static const char quick_text[] =
     "targets = { points = ( { x = 0.0; r = 20.0; amplitude = %.17g; } ); };\n"
     "image = { around_targets = { half_x = 0.6; half_r = 0.15; x_step = 0.02; r_step = 0.025; }; };\n";
 
-/* What `image --verify` says of a scene and of a recording of it with echoes of this amplitude, without a warning. */
-static void error_of_amplitude(double amplitude, const char *algorithm, char of[2][300])
+#define GRID "-.6:.02:61,19.85:.025:13"
+
+/* extreme.cfg, and its recording. */
+static void extreme_make(double amplitude)
 {
     const char *const simulate[ARGUMENTS_MAX] = {"simulate", "extreme.cfg", "-o", "extreme.mat"};
     char text[2000];
     snprintf(text, sizeof text, quick_text, amplitude);
     text_write("extreme.cfg", text);
     program_good(simulate);
+}
+
+/* What `image --verify` says of a scene and of a recording of it with echoes of this amplitude, without a warning. */
+static void error_of_amplitude(double amplitude, const char *algorithm, char of[2][300])
+{
+    extreme_make(amplitude);
     for (int k = 0; k < 2; k++) {
         const char *const verified[ARGUMENTS_MAX] = {"image",
                                                      k ? "--echoes" : "--scene",
@@ -80,9 +89,37 @@ static void extreme_echoes_are_measured(void **state)
     }
 }
 
+/* Tiles keep the samples' own unit. What a precision does not hold is refused before a file is made. */
+static void extreme_tiles_are_refused(void **state)
+{
+    (void)state;
+    static const struct refusal refusals[] = {
+        {{"image", "--scene", "extreme.cfg", "-a", "bp_linear", "--tile", "20x5", "-o", "t.mat"},
+         {"float does not hold", "precision=double"}},
+        {{"image", "--echoes", "extreme.mat", "-a", "bp_linear", "--tile", "20x5", "-o", "t.mat", "--grid", GRID},
+         {"the largest sample is 1.1e+30", "in float", "precision=double"}}};
+    static const char *const tiled[ARGUMENTS_MAX] = {
+        "image", "--echoes", "extreme.mat", "-a", "bp_linear:precision=double", "--tile", "20x5",
+        "-o",    "t.mat",    "--grid",      GRID};
+    static const char *const whole[ARGUMENTS_MAX] = {
+        "image", "--echoes", "extreme.mat", "-a", "bp_linear:precision=double", "-o", "w.mat", "--grid", GRID};
+    static const char *const compare[ARGUMENTS_MAX] = {"compare", "t.mat", "w.mat"};
+    extreme_make(1e30);
+    assert_all_refused(refusals, COUNT_OF(refusals));
+    assert_int_not_equal(access(path_in("t.mat"), F_OK), 0);
+    assert_int_not_equal(access(path_in("t.mat.tiles"), F_OK), 0);
+    program_good(tiled);
+    program_good(whole);
+    char *told = program_output(compare);
+    assert_int_equal(strncmp(told, "Relative error ", 15), 0);
+    assert_true(strtod(told + 15, NULL) < 1e-12);
+    free(told);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(errors_are_verified),
-                                       cmocka_unit_test(extreme_echoes_are_measured)};
+                                       cmocka_unit_test(extreme_echoes_are_measured),
+                                       cmocka_unit_test(extreme_tiles_are_refused)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
