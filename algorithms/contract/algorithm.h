@@ -102,7 +102,7 @@ double seconds_now(void);                                 /* monotonic clock, s 
 /* The work of a plan, and the work that it leaves out. */
 struct work {
     double flops; /* counted from the plan: 5 N log2 N an FFT, machine-independent */
-    double pairs; /* pixel-pulse pairs summed; 0 where an algorithm has none */
+    double pairs; /* pixel-record pairs summed; 0 where an algorithm has none */
     double bytes; /* the plan's own allocations with one thread */
     struct {
         const char *source; /* "BP22 Eq. (11)"; NULL ends the list */

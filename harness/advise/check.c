@@ -30,10 +30,10 @@ static int targets_conditions(const struct scene *scene, enum precision precisio
         list[count++] = (struct condition){
             "float_range",
             fmax(greatest, 1 / greatest),
-            0x1p100,
+            0x1p40,
             false,
             SEVERITY_INFORM,
-            "the strongest echo's amplitude, or 1 over it; beyond, a power of two scales the samples",
+            "the strongest echo's amplitude, or 1 over it; beyond, a power of two scales samples and image",
             "nothing: the scaling is exact"};
     list[count++] = (struct condition){"dynamic",
                                        20 * log10(greatest / least),

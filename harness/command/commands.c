@@ -14,7 +14,7 @@ const struct command commands[] = {
     {"report", "make one page of a results folder, or a site of several", "(DIR | --site DIR ... -o OUT)",
      "make one page of a results folder, DIR/report.html; or a site of several, which keeps kinds of machine apart: "
      "OUT/index.html",
-     "oZ", 1, INT_MAX, command_report, .example = "report results/run"},
+     "oZ", 1, INT_MAX, command_report, .example = "report results/latest"},
     {"list", "list the algorithms", "", "list the algorithms, with summary, reference and traits", "", 0, 0,
      command_list, .example = "list"},
     {"info", "explain an algorithm's settings, or an echo or image file", "(NAME | PLUGIN.so | FILE.mat)",
@@ -37,10 +37,12 @@ const struct command commands[] = {
     {"simulate", "write a scene's echoes", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate,
      .example = "simulate study/quick -o echoes.mat"},
     {"convert", "make an echo file of recordings in a public layout", "IN ... -o FILE.mat",
-     "make an echo file of recordings in a public layout, which their fields decide: AFRL Gotcha, AirSAS, zea", "o", 1,
-     INT_MAX, command_convert, .example = "convert pass1.mat pass2.mat -o echoes.mat"},
+     "make an echo file of recordings in a public layout, which their fields decide: AFRL Gotcha, AirSAS, zea, "
+     "USTB UFF, CPHD",
+     "o", 1, INT_MAX, command_convert, .example = "convert pass1.mat pass2.mat -o echoes.mat"},
     {"image", "form one image",
-     "(--scene SCENE | --echoes FILE.mat [--grid GRID]) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
+     "(--scene SCENE | --echoes FILE.mat [--grid GRID]) --algorithm SPEC -o (FILE.mat | FILE.png | FILE.svg) [--range "
+     "DB] "
      "[--verify] [(--tile NxM | --memory BYTES) [--shard I/N]] [--timeout S]",
      "form one image, as numbers or as a picture; with --tile or --memory it continues where it was ended",
      "oseagtRWIXYU", 0, 0, command_image, .example = "image -e echoes.mat -a bp_sinc:taps=8 -o image.mat"},
@@ -60,7 +62,7 @@ const struct command commands[] = {
      "[--markdown FILE] [--json FILE]",
      "list what got worse between two results folders or CSV files; how two image files differ; or what is slower of "
      "two programs, run side by side",
-     "oaBMJ", 2, INT_MAX, command_compare, .example = "compare results/old results/run"},
+     "oaBMJ", 2, INT_MAX, command_compare, .example = "compare results/old results/latest"},
     {"measure", "", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false, true},
     {"baseline", "measure the quality and work that the tests compare with", "[-o FILE.csv]",
      "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0, command_baseline,

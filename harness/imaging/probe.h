@@ -1,6 +1,6 @@
-/* An image's error, measured on some of its pixels. The exact image is formed of segments of rows: half of them the
-   brightest of a pilot image, half drawn from the rest in order of brightness. The error is relative to the image,
-   whatever the scene, and needs neither targets nor the whole exact image. */
+/* An image's error, measured on some of its pixels. The exact image is formed of segments of rows: a quarter of them
+   the brightest of a pilot image, the others drawn from the rest in order of brightness. The error is relative to the
+   image, whatever the scene, and needs neither targets nor the whole exact image. */
 #ifndef SASBENCH_IMAGING_PROBE_H
 #define SASBENCH_IMAGING_PROBE_H
 

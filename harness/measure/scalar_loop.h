@@ -20,7 +20,7 @@ struct scalar_loop {
    its grids must not be turned. */
 struct scalar_loop scalar_loop_choose(const struct problem *problem, const struct echoes *echoes);
 void scalar_loop_free(struct scalar_loop *loop);
-/* Seconds that one pixel-pulse pair takes; NAN without pairs. */
+/* Seconds that one pixel-record pair takes; NAN without pairs. */
 double scalar_loop_seconds(const struct scalar_loop *loop);
 
 #endif

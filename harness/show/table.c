@@ -176,7 +176,7 @@ void table_columns(FILE *stream)
           "          or other work had the processors, or the machine's speed changed\n"
           "speed-up  against the scalar reference loop timed beside, which takes out the\n"
           "          machine's momentary speed\n"
-          "rate      10^9 pixel-pulse pairs (Gp/s) or, where none are summed, operations\n"
+          "rate      10^9 pixel-record pairs (Gp/s) or, where none are summed, operations\n"
           "          (GF/s) a second; as +gain only where lines have 110 columns\n"
           "error     against the exact image, relative L2; +gain: after one best gain;\n"
           "          phase: rms over the strong pixels\n"

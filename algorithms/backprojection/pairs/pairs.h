@@ -1,4 +1,4 @@
-/* Which pixel-pulse pairs an image sums: those inside the record and inside the aperture limit. */
+/* Which pixel-record pairs an image sums: those inside the record and inside the aperture limit. */
 #ifndef SASBENCH_BACKPROJECTION_PAIRS_PAIRS_H
 #define SASBENCH_BACKPROJECTION_PAIRS_PAIRS_H
 
